@@ -1,0 +1,13 @@
+//! The fabric as plain data: yarns, the nodes where they touch, the stitch contacts, and what yarns are made of.
+
+pub mod card;
+pub mod frame;
+pub mod ids;
+pub mod motion;
+pub mod network;
+
+pub use card::{FabricCard, YarnCard};
+pub use frame::Frame;
+pub use ids::{NodeId, PassId, StitchId, YarnId};
+pub use motion::{Motion, Pose};
+pub use network::{ContactPair, LoopInfo, Network, PassKind, SegmentKind, StitchContact, WrapPair};

@@ -1,0 +1,187 @@
+//! The network: what does not change while a fabric moves.
+
+use glam::DVec3;
+
+use super::ids::{NodeId, PassId, YarnId};
+
+/// Where on a loop a pass lies; it decides the rest bend angle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum PassKind {
+    /// Between a stitch contact and a sinker or a head: the foot and the head of a loop.
+    FootHead,
+    /// Between a stitch contact and a leg.
+    Leg,
+    /// Cast-on ties, selvedge turns, bind-off and yarn ends: rest straight.
+    Edge,
+}
+
+/// What a segment (from a pass to the next pass of its yarn) is part of; it decides the spacing distance.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum SegmentKind {
+    /// Between the two nodes of one stitch contact.
+    Stitch,
+    /// A leg of a loop (along the wale).
+    Leg,
+    /// The head of a loop (along the course).
+    Head,
+    /// A sinker between two neighbouring loops of a course.
+    Sinker,
+    /// Cast-on ties, selvedge turns, bind-off and tails.
+    Edge,
+}
+
+/// Which of a stitch contact's two opposite pairs wraps.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum ContactPair {
+    /// Child's sinker side and parent's head side: along the course.
+    Course,
+    /// Parent's leg side and child's leg side: along the wale.
+    Leg,
+}
+
+/// One wrapped pair of opposite yarn segments about a stitch contact [Cirio2017, Fig. 8].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrapPair {
+    /// Which pair of the contact this is.
+    pub pair: ContactPair,
+    /// The pass next to node `q₀`, away from the contact (`x₄` of the paper).
+    pub outward_at_first: PassId,
+    /// The pass next to node `q₁`, away from the contact (`x₃` of the paper).
+    pub outward_at_second: PassId,
+    /// Periodic image of `outward_at_first`'s node relative to `q₀`'s copy that the contact is built on.
+    pub image_at_first: [i16; 2],
+    /// Periodic image of `outward_at_second`'s node relative to the same copy.
+    pub image_at_second: [i16; 2],
+}
+
+/// A stitch contact: two nodes and the passes that run through both.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StitchContact {
+    /// `q₀` (child's foot crosses parent's leg) and `q₁` (child's leg crosses parent's head).
+    pub nodes: [NodeId; 2],
+    /// Each yarn of the contact: its pass at `q₀` and its pass at `q₁` (consecutive, in either order).
+    pub passes: Vec<[PassId; 2]>,
+    /// Sign of the wrapping angle: `+1` for knit-left and purl-right, `−1` for knit-right and purl-left.
+    pub wrap_sign: f64,
+    /// The pairs that wrap.
+    pub pairs: Vec<WrapPair>,
+}
+
+/// One loop of the chart, for inspection, colour and measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopInfo {
+    /// Row of the chart, from the cast-on.
+    pub row: u32,
+    /// Column of the chart, from the left as seen from the front (right side).
+    pub column: u32,
+    /// The loop's own nodes, left foot, left leg, right leg, right foot (fewer at edges).
+    pub nodes: Vec<NodeId>,
+    /// Seen from the front: `true` for a knit, `false` for a purl.
+    pub knit: bool,
+}
+
+/// The fabric's yarns, nodes and contacts. Lengths in metres.
+///
+/// All passes of all yarns lie one after the other in yarn order; a *segment* is two consecutive passes of a yarn,
+/// a *bend* three.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Network {
+    /// Node of each pass.
+    pub pass_node: Vec<NodeId>,
+    /// Periodic image (course, wale) of the node that the pass goes through; zero in a finite fabric.
+    pub pass_image: Vec<[i16; 2]>,
+    /// Kind of each pass.
+    pub pass_kind: Vec<PassKind>,
+    /// Whether the pass's sliding coordinate may change (false at yarn ends, turns and single-yarn nodes).
+    pub pass_slides: Vec<bool>,
+    /// Kind of the segment from each pass to the next of its yarn (`Edge`, unused, for a yarn's last pass).
+    pub segment_kind: Vec<SegmentKind>,
+    /// Initial rest arc length of each pass along its yarn, strictly increasing \[m\].
+    pub arc_length: Vec<f64>,
+    /// First pass of each yarn; one entry more than there are yarns.
+    pub yarn_start: Vec<u32>,
+    /// For a yarn that closes on a periodic image of itself: the image, and its arc length a period \[m\].
+    pub yarn_closure: Vec<Option<([i16; 2], f64)>>,
+    /// Colour of each yarn as sRGB, for pictures and exports.
+    pub yarn_color: Vec<[u8; 3]>,
+    /// First entry of each node's stack in `stack_pass`; one entry more than there are nodes.
+    pub stack_start: Vec<u32>,
+    /// Passes of each node's stack, front to back as seen from the right side of the fabric.
+    pub stack_pass: Vec<PassId>,
+    /// Initial positions \[m\], one per node: x along the course, y along the wale, z to the front.
+    pub position: Vec<DVec3>,
+    /// Unit vectors to the front of the fabric in the initial layout, one per node.
+    pub front: Vec<DVec3>,
+    /// Stitch contacts.
+    pub stitches: Vec<StitchContact>,
+    /// Loops of the chart.
+    pub loops: Vec<LoopInfo>,
+    /// Rows and columns of the chart.
+    pub chart_size: [u32; 2],
+    /// For a periodic tile: initial periods along course and wale \[m\].
+    pub periods: Option<[DVec3; 2]>,
+}
+
+impl Network {
+    /// Number of nodes.
+    #[must_use]
+    pub fn node_count(&self) -> usize {
+        self.position.len()
+    }
+    /// Number of passes.
+    #[must_use]
+    pub fn pass_count(&self) -> usize {
+        self.pass_node.len()
+    }
+    /// Number of yarns.
+    #[must_use]
+    pub fn yarn_count(&self) -> usize {
+        self.yarn_start.len().saturating_sub(1)
+    }
+    /// Passes of a yarn, in order.
+    #[must_use]
+    pub fn yarn_passes(&self, yarn: YarnId) -> std::ops::Range<usize> {
+        self.yarn_start[yarn.index()] as usize..self.yarn_start[yarn.index() + 1] as usize
+    }
+    /// Passes stacked at a node, front to back.
+    #[must_use]
+    pub fn stack(&self, node: NodeId) -> &[PassId] {
+        let i = node.index();
+        &self.stack_pass[self.stack_start[i] as usize..self.stack_start[i + 1] as usize]
+    }
+    /// The yarn of each pass.
+    #[must_use]
+    pub fn pass_yarn(&self) -> Vec<YarnId> {
+        let mut yarn = vec![YarnId(0); self.pass_count()];
+        for y in 0..self.yarn_count() {
+            for p in self.yarn_passes(YarnId::new(y)) {
+                yarn[p] = YarnId::new(y);
+            }
+        }
+        yarn
+    }
+    /// Fills `stack_start` from `stacks`, one list of passes (front to back) per node.
+    pub fn set_stacks(&mut self, stacks: &[Vec<PassId>]) {
+        self.stack_start = vec![0];
+        self.stack_pass.clear();
+        for stack in stacks {
+            self.stack_pass.extend(stack);
+            self.stack_start
+                .push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
+        }
+    }
+    /// Total rest length of all yarns \[m\].
+    #[must_use]
+    pub fn yarn_length(&self) -> f64 {
+        (0..self.yarn_count())
+            .map(|y| {
+                let passes = self.yarn_passes(YarnId::new(y));
+                match self.yarn_closure[y] {
+                    Some((_, length)) => length,
+                    None if passes.len() < 2 => 0.0,
+                    None => self.arc_length[passes.end - 1] - self.arc_length[passes.start],
+                }
+            })
+            .sum()
+    }
+}
