@@ -1,1 +1,4 @@
-//! Numerics.
+//! Small derivative mathematics, block-sparse matrices and solvers. Knows no cloth.
+
+pub mod check;
+pub mod jet;

@@ -166,8 +166,7 @@ impl Network {
         self.stack_pass.clear();
         for stack in stacks {
             self.stack_pass.extend(stack);
-            self.stack_start
-                .push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
+            self.stack_start.push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
         }
     }
     /// Total rest length of all yarns \[m\].
