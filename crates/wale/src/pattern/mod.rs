@@ -1,3 +1,8 @@
 //! Stitch charts and what is made of them; this room knows no force.
 
 pub mod chart;
+pub mod instructions;
+pub mod named;
+pub mod symbols;
+
+pub use chart::{Chart, ChartError, Side, Stitch, Working};
