@@ -4,3 +4,4 @@ pub mod dynamics;
 pub mod energy;
 pub mod geometry;
 pub mod model;
+pub mod pattern;
