@@ -61,9 +61,7 @@ pub enum Working {
 
 impl Default for Working {
     fn default() -> Self {
-        Self::Flat {
-            first_row: Side::RightSide,
-        }
+        Self::Flat { first_row: Side::RightSide }
     }
 }
 
@@ -147,11 +145,7 @@ impl Chart {
                 return Err(ChartError::EmptyRow { row });
             }
             if found != expected {
-                return Err(ChartError::Ragged {
-                    row,
-                    found,
-                    expected,
-                });
+                return Err(ChartError::Ragged { row, found, expected });
             }
         }
         Self::check_size(expected as u64, rows.len() as u64)?;
@@ -209,9 +203,7 @@ impl Chart {
             let source = &self.rows[r % self.row_count()];
             source.iter().copied().cycle().take(columns).collect()
         };
-        Ok(Self {
-            rows: (0..rows).map(row).collect(),
-        })
+        Ok(Self { rows: (0..rows).map(row).collect() })
     }
 
     /// The smallest rectangle that, repeated, gives this chart again.
@@ -219,31 +211,17 @@ impl Chart {
     /// A repeat that does not divide the chart counts when the chart shows at least two whole ones of it.
     #[must_use]
     pub fn smallest_repeat(&self) -> Self {
-        let columns = smallest_period(self.column_count(), |a, b| {
-            self.rows.iter().all(|row| row[a] == row[b])
-        });
+        let columns = smallest_period(self.column_count(), |a, b| self.rows.iter().all(|row| row[a] == row[b]));
         let rows = smallest_period(self.row_count(), |a, b| self.rows[a] == self.rows[b]);
-        Self {
-            rows: self.rows[..rows]
-                .iter()
-                .map(|row| row[..columns].to_vec())
-                .collect(),
-        }
+        Self { rows: self.rows[..rows].iter().map(|row| row[..columns].to_vec()).collect() }
     }
 
     /// Knit–purl changes from one stitch to the next within a row, per stitch, of the chart repeated side by side.
     #[must_use]
     pub fn transitions_per_stitch(&self) -> f64 {
         let columns = self.column_count();
-        let changes: usize = self
-            .rows
-            .iter()
-            .map(|row| {
-                (0..columns)
-                    .filter(|&c| row[c] != row[(c + 1) % columns])
-                    .count()
-            })
-            .sum();
+        let changes: usize =
+            self.rows.iter().map(|row| (0..columns).filter(|&c| row[c] != row[(c + 1) % columns]).count()).sum();
         changes as f64 / self.loop_count() as f64
     }
 
@@ -272,9 +250,7 @@ impl Chart {
     pub fn rib(knit: usize, purl: usize) -> Result<Self, ChartError> {
         let columns = knit.saturating_add(purl);
         Self::check_size(columns as u64, 1)?;
-        Ok(Self::from_fn(columns, 1, |column, _| {
-            knit_if(column < knit)
-        }))
+        Ok(Self::from_fn(columns, 1, |column, _| knit_if(column < knit)))
     }
 
     /// Knit and purl alternate along both directions.
@@ -296,9 +272,7 @@ impl Chart {
     pub fn basket(columns: usize, rows: usize) -> Result<Self, ChartError> {
         Self::check_size(columns as u64, rows as u64)?;
         Self::check_size(2 * columns as u64, 2 * rows as u64)?;
-        Ok(Self::from_fn(2 * columns, 2 * rows, |column, row| {
-            knit_if((column < columns) == (row < rows))
-        }))
+        Ok(Self::from_fn(2 * columns, 2 * rows, |column, row| knit_if((column < columns) == (row < rows))))
     }
 
     /// Rows: `knit` knit ones, then `purl` purl ones, as seen from the front.
@@ -313,11 +287,7 @@ impl Chart {
 
     /// A small chart, sizes checked by the caller.
     fn from_fn(columns: usize, rows: usize, stitch: impl Fn(usize, usize) -> Stitch) -> Self {
-        Self {
-            rows: (0..rows)
-                .map(|row| (0..columns).map(|column| stitch(column, row)).collect())
-                .collect(),
-        }
+        Self { rows: (0..rows).map(|row| (0..columns).map(|column| stitch(column, row)).collect()).collect() }
     }
 }
 
@@ -376,11 +346,7 @@ mod tests {
         assert_eq!(drawn(&Chart::rib(2, 1).unwrap()), ["kkp"]);
         assert_eq!(drawn(&Chart::seed()), ["kp", "pk"]);
         assert_eq!(drawn(&Chart::moss()), ["kp", "kp", "pk", "pk"]);
-        assert_eq!(
-            drawn(&Chart::basket(2, 1).unwrap()),
-            ["kkpp", "ppkk"],
-            "blocks change places"
-        );
+        assert_eq!(drawn(&Chart::basket(2, 1).unwrap()), ["kkpp", "ppkk"], "blocks change places");
         assert_eq!(drawn(&Chart::welting(2, 1).unwrap()), ["k", "k", "p"]);
     }
 
@@ -417,14 +383,8 @@ mod tests {
         assert_eq!(Chart::new(vec![]), Err(ChartError::NoRows));
         let ragged = vec![vec![Stitch::Knit; 3], vec![Stitch::Knit; 2]];
         let error = Chart::new(ragged).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "row 2 has 2 stitches, the rows below it have 3"
-        );
-        assert_eq!(
-            Chart::new(vec![vec![]]),
-            Err(ChartError::EmptyRow { row: 0 })
-        );
+        assert_eq!(error.to_string(), "row 2 has 2 stitches, the rows below it have 3");
+        assert_eq!(Chart::new(vec![vec![]]), Err(ChartError::EmptyRow { row: 0 }));
         assert!(Chart::rib(0, 0).is_err());
         assert!(Chart::rib(usize::MAX, 1).is_err());
         assert!(Chart::basket(usize::MAX, usize::MAX).is_err());
@@ -437,9 +397,7 @@ mod tests {
     fn sides_alternate_flat_and_not_in_the_round() {
         let flat = Working::default();
         assert!(!flat.left_to_right(0) && flat.left_to_right(1));
-        let from_behind = Working::Flat {
-            first_row: Side::WrongSide,
-        };
+        let from_behind = Working::Flat { first_row: Side::WrongSide };
         assert!(from_behind.left_to_right(0) && !from_behind.left_to_right(1));
         assert!(!Working::Round.left_to_right(1));
     }
