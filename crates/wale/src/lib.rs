@@ -2,6 +2,7 @@
 
 pub mod dynamics;
 pub mod energy;
+pub mod fabric;
 pub mod geometry;
 pub mod model;
 pub mod pattern;
