@@ -1,4 +1,5 @@
 //! Small derivative mathematics, block-sparse matrices and solvers. Knows no cloth.
 
 pub mod check;
+pub mod dense;
 pub mod jet;
