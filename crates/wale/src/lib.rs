@@ -1,5 +1,6 @@
 //! Yarn-level cloth: from a stitch chart to moving fabric.
 
+pub mod contact;
 pub mod dynamics;
 pub mod energy;
 pub mod fabric;
