@@ -12,9 +12,8 @@ pub use card::{FabricCard, YarnCard};
 pub use frame::Frame;
 pub use ids::{NodeId, PassId, StitchId, YarnId};
 pub use motion::{Motion, Pose};
-pub use network::{ContactPair, LoopInfo, Network, PassKind, SegmentKind, StitchContact, WrapPair};
+pub use network::{ContactPair, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair};
 pub use plan::{
-    Drive, ExportFormat, Grip, LinearSolver, Obstacle, Output, Pictures, Placement, Plan, Shape,
-    Simulation,
+    Drive, ExportFormat, Grip, LinearSolver, Obstacle, Output, Pictures, Placement, Plan, Shape, Simulation,
 };
 pub use selection::{Edge, Selection};

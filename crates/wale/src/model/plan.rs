@@ -34,10 +34,7 @@ pub struct Placement {
 impl Default for Placement {
     /// Lying, front up, its middle at the origin.
     fn default() -> Self {
-        Self {
-            center: DVec3::ZERO,
-            rotation: DQuat::IDENTITY,
-        }
+        Self { center: DVec3::ZERO, rotation: DQuat::IDENTITY }
     }
 }
 

@@ -70,17 +70,11 @@ impl Selection {
                 .filter(|&i| positions[i].cmpge(*low).all() && positions[i].cmple(*high).all())
                 .map(NodeId::new)
                 .collect(),
-            Self::Edge { edge, depth } => loops_and_edges(network, |row, column| {
-                edge.reaches(*depth, row, column, row_count, column_count)
-            }),
-            Self::Corner {
-                horizontal,
-                vertical,
-                depth,
-            } => loops_and_edges(network, |row, column| {
-                [horizontal, vertical]
-                    .iter()
-                    .all(|edge| edge.reaches(*depth, row, column, row_count, column_count))
+            Self::Edge { edge, depth } => {
+                loops_and_edges(network, |row, column| edge.reaches(*depth, row, column, row_count, column_count))
+            }
+            Self::Corner { horizontal, vertical, depth } => loops_and_edges(network, |row, column| {
+                [horizontal, vertical].iter().all(|edge| edge.reaches(*depth, row, column, row_count, column_count))
             }),
             Self::Loops { rows, columns } => loops_and_edges(network, |row, column| {
                 rows.as_ref().is_none_or(|range| range.contains(&row))
@@ -137,22 +131,12 @@ mod tests {
     /// Two rows of two loops of one node each, between a cast-on node (0) and an end node (5).
     fn small() -> Network {
         let node = |n: usize| NodeId::new(n);
-        let stitch = |n: usize, row, column| LoopInfo {
-            row,
-            column,
-            nodes: vec![node(n)],
-            knit: true,
-        };
+        let stitch = |n: usize, row, column| LoopInfo { row, column, nodes: vec![node(n)], knit: true };
         Network {
             pass_node: [0, 2, 1, 3, 4, 5].map(node).to_vec(),
             yarn_start: vec![0, 6],
             position: (0..6).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect(),
-            loops: vec![
-                stitch(1, 0, 0),
-                stitch(2, 0, 1),
-                stitch(3, 1, 0),
-                stitch(4, 1, 1),
-            ],
+            loops: vec![stitch(1, 0, 0), stitch(2, 0, 1), stitch(3, 1, 0), stitch(4, 1, 1)],
             chart_size: [2, 2],
             ..Network::default()
         }
@@ -171,26 +155,13 @@ mod tests {
         assert_eq!(edge(Edge::Right), [0, 2, 4, 5]);
         assert_eq!(edge(Edge::Bottom), [0, 1, 2]);
         assert_eq!(edge(Edge::Top), [3, 4, 5]);
-        let corner = Selection::Corner {
-            horizontal: Edge::Top,
-            vertical: Edge::Right,
-            depth: 1,
-        };
+        let corner = Selection::Corner { horizontal: Edge::Top, vertical: Edge::Right, depth: 1 };
         assert_eq!(picked(&corner), [4, 5]);
-        let loops = Selection::Loops {
-            rows: Some(0..1),
-            columns: Some(0..1),
-        };
+        let loops = Selection::Loops { rows: Some(0..1), columns: Some(0..1) };
         assert_eq!(picked(&loops), [1]);
-        let deep = Selection::Edge {
-            edge: Edge::Top,
-            depth: 9,
-        };
+        let deep = Selection::Edge { edge: Edge::Top, depth: 9 };
         assert_eq!(picked(&deep), [0, 1, 2, 3, 4, 5]);
-        let region = Selection::Region {
-            low: DVec3::new(0.5, -1.0, -1.0),
-            high: DVec3::new(2.5, 1.0, 1.0),
-        };
+        let region = Selection::Region { low: DVec3::new(0.5, -1.0, -1.0), high: DVec3::new(2.5, 1.0, 1.0) };
         assert_eq!(picked(&region), [1, 2]);
         assert_eq!(picked(&Selection::All).len(), 6);
     }

@@ -2,6 +2,8 @@
 
 pub mod chart;
 pub mod instructions;
+pub mod knit;
+mod layout;
 pub mod named;
 pub mod symbols;
 
