@@ -36,11 +36,7 @@ pub struct BccCurve {
 ///
 /// # Errors
 /// [`ExportError::NotFinite`], [`ExportError::TooMany`] beyond 2³¹ points a yarn, and what the stream returns.
-pub fn write_bcc(
-    out: &mut impl Write,
-    snapshot: &Snapshot,
-    settings: &Settings,
-) -> Result<(), ExportError> {
+pub fn write_bcc(out: &mut impl Write, snapshot: &Snapshot, settings: &Settings) -> Result<(), ExportError> {
     snapshot.check()?;
     let curves: Vec<(&[DVec3], bool)> = snapshot.drawn().map(|(_, c)| control_points(c)).collect();
     let total: usize = curves.iter().map(|(points, _)| points.len()).sum();
@@ -58,10 +54,8 @@ pub fn write_bcc(
     out.write_all(&(total as u64).to_le_bytes())?;
     out.write_all(&info)?;
     for (points, closed) in curves {
-        let count = i32::try_from(points.len()).map_err(|_| ExportError::TooMany {
-            what: "points of a yarn",
-            most: i32::MAX as u64,
-        })?;
+        let count = i32::try_from(points.len())
+            .map_err(|_| ExportError::TooMany { what: "points of a yarn", most: i32::MAX as u64 })?;
         out.write_all(&(if closed { -count } else { count }).to_le_bytes())?;
         for point in points {
             for x in settings.up.turn(*point).to_array() {
@@ -75,9 +69,7 @@ pub fn write_bcc(
 /// A curve's points; for a ring without the repeated last one.
 fn control_points(curve: &Curve) -> (&[DVec3], bool) {
     match curve.points.as_slice() {
-        [first, .., last] if first == last && curve.points.len() > 3 => {
-            (&curve.points[..curve.points.len() - 1], true)
-        }
+        [first, .., last] if first == last && curve.points.len() > 3 => (&curve.points[..curve.points.len() - 1], true),
         points => (points, false),
     }
 }
@@ -87,21 +79,14 @@ fn control_points(curve: &Curve) -> (&[DVec3], bool) {
 /// # Errors
 /// [`ExportError::Malformed`] for anything else; counts are believed only as far as there are bytes.
 pub fn read_bcc(input: &mut impl Read) -> Result<BccFile, ExportError> {
-    let bad = |reason: String| ExportError::Malformed {
-        format: "BCC",
-        reason,
-    };
+    let bad = |reason: String| ExportError::Malformed { format: "BCC", reason };
     let mut header = [0u8; 64];
-    input
-        .read_exact(&mut header)
-        .map_err(|e| bad(format!("no header of 64 bytes: {e}")))?;
+    input.read_exact(&mut header).map_err(|e| bad(format!("no header of 64 bytes: {e}")))?;
     if &header[..4] != b"BCC\x44" {
         return Err(bad("it does not begin with `BCC` and 0x44".into()));
     }
     if &header[4..6] != b"C0" || header[6] != 3 {
-        return Err(bad(
-            "it has no Catmull-Rom curves in three dimensions".into()
-        ));
+        return Err(bad("it has no Catmull-Rom curves in three dimensions".into()));
     }
     let up = match header[7] {
         1 => UpAxis::Y,
@@ -118,16 +103,12 @@ pub fn read_bcc(input: &mut impl Read) -> Result<BccFile, ExportError> {
     let mut curves = Vec::new();
     for k in 0..curve_count {
         let mut count = [0u8; 4];
-        input
-            .read_exact(&mut count)
-            .map_err(|e| bad(format!("it ends before curve {k} of {curve_count}: {e}")))?;
+        input.read_exact(&mut count).map_err(|e| bad(format!("it ends before curve {k} of {curve_count}: {e}")))?;
         let signed = i32::from_le_bytes(count);
         let count = u64::from(signed.unsigned_abs());
-        left = left.checked_sub(count).ok_or_else(|| {
-            bad(format!(
-                "its curves have more than the {total} points declared"
-            ))
-        })?;
+        left = left
+            .checked_sub(count)
+            .ok_or_else(|| bad(format!("its curves have more than the {total} points declared")))?;
         // The reader grows with the bytes there are, not with what the count claims.
         let mut bytes = Vec::new();
         input.by_ref().take(count * 12).read_to_end(&mut bytes)?;
@@ -144,18 +125,11 @@ pub fn read_bcc(input: &mut impl Read) -> Result<BccFile, ExportError> {
         if let Some(i) = points.iter().position(|p| !p.is_finite()) {
             return Err(bad(format!("point {i} of curve {k} is not finite")));
         }
-        curves.push(BccCurve {
-            points,
-            closed: signed < 0,
-        });
+        curves.push(BccCurve { points, closed: signed < 0 });
     }
     if left != 0 {
         return Err(bad(format!("its curves lack {left} of {total} points")));
     }
     let text = header[24..].split(|b| *b == 0).next().unwrap_or_default();
-    Ok(BccFile {
-        up,
-        info: String::from_utf8_lossy(text).into_owned(),
-        curves,
-    })
+    Ok(BccFile { up, info: String::from_utf8_lossy(text).into_owned(), curves })
 }

@@ -18,10 +18,7 @@ impl Column {
     /// A column with its unit.
     #[must_use]
     pub fn new(name: &str, unit: &str) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-        }
+        Self { name: name.into(), unit: unit.into() }
     }
 }
 
@@ -48,11 +45,7 @@ pub fn write_csv(out: &mut impl Write, table: &Table) -> Result<(), ExportError>
         .columns
         .iter()
         .map(|column| {
-            let unit = if column.unit.is_empty() {
-                "-"
-            } else {
-                &column.unit
-            };
+            let unit = if column.unit.is_empty() { "-" } else { &column.unit };
             quoted(&format!("{} [{unit}]", column.name))
         })
         .collect();
@@ -110,11 +103,7 @@ mod tests {
 
     #[test]
     fn ragged_tables_are_refused() {
-        let table = Table {
-            columns: vec![Column::new("a", "m")],
-            rows: vec![vec![1.0, 2.0]],
-            ..Table::default()
-        };
+        let table = Table { columns: vec![Column::new("a", "m")], rows: vec![vec![1.0, 2.0]], ..Table::default() };
         assert!(write_csv(&mut Vec::new(), &table).is_err());
     }
 }

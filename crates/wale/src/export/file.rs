@@ -17,10 +17,7 @@ pub fn export_file(
     path: &Path,
     content: impl FnOnce(&mut BufWriter<File>) -> Result<(), ExportError>,
 ) -> Result<(), ExportError> {
-    let here = |source| ExportError::File {
-        path: path.to_owned(),
-        source,
-    };
+    let here = |source| ExportError::File { path: path.to_owned(), source };
     let (part, file) = create_beside(path).map_err(here)?;
     let mut out = BufWriter::with_capacity(1 << 16, file);
     let written = content(&mut out).map_err(|error| match error {
@@ -53,9 +50,7 @@ fn folder_of(path: &Path) -> &Path {
 
 /// A new file in the folder of `path`, under a name nobody else has.
 fn create_beside(path: &Path) -> io::Result<(PathBuf, File)> {
-    let name = path
-        .file_name()
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it names no file"))?;
+    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "it names no file"))?;
     // A rename would put a file in the place of a device.
     if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
         let reason = "it is there already and is not a plain file";

@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use super::snapshot::checked;
 use super::{
-    ExportError, Settings, Snapshot, Snapshots, export_file, write_bcc, write_obj, write_ply,
-    write_pvd, write_usda, write_vtp,
+    ExportError, Settings, Snapshot, Snapshots, export_file, write_bcc, write_obj, write_ply, write_pvd, write_usda,
+    write_vtp,
 };
 
 /// A file format for yarns.
@@ -37,14 +37,7 @@ pub struct UnknownFormat {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 6] = [
-        Self::Usda,
-        Self::Vtp,
-        Self::Pvd,
-        Self::Bcc,
-        Self::Obj,
-        Self::Ply,
-    ];
+    pub const ALL: [Self; 6] = [Self::Usda, Self::Vtp, Self::Pvd, Self::Bcc, Self::Obj, Self::Ply];
 
     /// The file name extension, without a dot.
     #[must_use]
@@ -64,10 +57,7 @@ impl Format {
     /// # Errors
     /// [`UnknownFormat`], also for a path without extension.
     pub fn of_path(path: &Path) -> Result<Self, UnknownFormat> {
-        path.extension()
-            .map(|e| e.to_string_lossy())
-            .unwrap_or_default()
-            .parse()
+        path.extension().map(|e| e.to_string_lossy()).unwrap_or_default().parse()
     }
 
     fn list() -> String {
@@ -89,9 +79,7 @@ impl FromStr for Format {
         Self::ALL
             .into_iter()
             .find(|format| format.extension().eq_ignore_ascii_case(plain))
-            .ok_or_else(|| UnknownFormat {
-                word: word.to_owned(),
-            })
+            .ok_or_else(|| UnknownFormat { word: word.to_owned() })
     }
 }
 
@@ -144,11 +132,7 @@ pub fn write(
         Format::Bcc | Format::Obj | Format::Ply => {
             for i in 0..count {
                 let snapshot: Snapshot = checked(snapshots, i)?;
-                let file = if count == 1 {
-                    path.to_owned()
-                } else {
-                    numbered(i, format.extension())
-                };
+                let file = if count == 1 { path.to_owned() } else { numbered(i, format.extension()) };
                 export_file(&file, |out| match format {
                     Format::Bcc => write_bcc(out, &snapshot, settings),
                     Format::Ply => write_ply(out, &snapshot, settings),

@@ -10,19 +10,10 @@ use crate::geometry::{Curve, ply_curves, tube};
 ///
 /// # Errors
 /// [`ExportError::NotFinite`] and what the stream returns.
-pub fn write_obj(
-    out: &mut impl Write,
-    snapshot: &Snapshot,
-    settings: &Settings,
-) -> Result<(), ExportError> {
+pub fn write_obj(out: &mut impl Write, snapshot: &Snapshot, settings: &Settings) -> Result<(), ExportError> {
     snapshot.check()?;
     writeln!(out, "# {}", one_line(&settings.title))?;
-    writeln!(
-        out,
-        "# metres, {} up, {:?} s",
-        settings.up.letter(),
-        snapshot.time
-    )?;
+    writeln!(out, "# metres, {} up, {:?} s", settings.up.letter(), snapshot.time)?;
     let mut base = 1u64;
     for (yarn, curve) in snapshot.drawn() {
         writeln!(out, "o yarn_{yarn}")?;

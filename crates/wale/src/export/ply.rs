@@ -12,11 +12,7 @@ use crate::geometry::tube;
 ///
 /// # Errors
 /// [`ExportError::TooMany`] beyond 2³² vertices, [`ExportError::NotFinite`], and what the stream returns.
-pub fn write_ply(
-    out: &mut impl Write,
-    snapshot: &Snapshot,
-    settings: &Settings,
-) -> Result<(), ExportError> {
+pub fn write_ply(out: &mut impl Write, snapshot: &Snapshot, settings: &Settings) -> Result<(), ExportError> {
     snapshot.check()?;
     // Made twice, counted the first time: the header comes first, and all meshes at once would be far larger.
     let (mut vertices, mut faces) = (0u64, 0u64);
@@ -28,21 +24,13 @@ pub fn write_ply(
         }
     }
     if vertices > u64::from(u32::MAX) {
-        return Err(ExportError::TooMany {
-            what: "vertices",
-            most: u64::from(u32::MAX),
-        });
+        return Err(ExportError::TooMany { what: "vertices", most: u64::from(u32::MAX) });
     }
     write_header(out, snapshot, settings, vertices, faces)?;
     for (yarn, curve) in snapshot.drawn() {
         for strand in strands(curve, settings) {
             let mesh = tube(&strand, settings.sides);
-            for ((v, n), i) in mesh
-                .vertices
-                .iter()
-                .zip(&mesh.normals)
-                .zip(&mesh.curve_point)
-            {
+            for ((v, n), i) in mesh.vertices.iter().zip(&mesh.normals).zip(&mesh.curve_point) {
                 let i = *i as usize;
                 for x in [settings.up.turn(*v), settings.up.turn(*n)] {
                     singles(out, &x.to_array())?;
@@ -81,12 +69,7 @@ fn write_header(
 ) -> Result<(), ExportError> {
     writeln!(out, "ply\nformat binary_little_endian 1.0")?;
     writeln!(out, "comment {}", one_line(&settings.title))?;
-    writeln!(
-        out,
-        "comment metres, {} up, {:?} s",
-        settings.up.letter(),
-        snapshot.time
-    )?;
+    writeln!(out, "comment metres, {} up, {:?} s", settings.up.letter(), snapshot.time)?;
     writeln!(out, "element vertex {vertices}")?;
     for name in ["x", "y", "z", "nx", "ny", "nz"] {
         writeln!(out, "property float {name}")?;
@@ -98,15 +81,10 @@ fn write_header(
     for field in &snapshot.fields {
         writeln!(out, "property float {}", identifier(&field.name))?;
     }
-    writeln!(
-        out,
-        "element face {faces}\nproperty list uchar uint vertex_indices\nend_header"
-    )?;
+    writeln!(out, "element face {faces}\nproperty list uchar uint vertex_indices\nend_header")?;
     Ok(())
 }
 
 fn singles(out: &mut impl Write, values: &[f64]) -> std::io::Result<()> {
-    values
-        .iter()
-        .try_for_each(|v| out.write_all(&(*v as f32).to_le_bytes()))
+    values.iter().try_for_each(|v| out.write_all(&(*v as f32).to_le_bytes()))
 }

@@ -15,11 +15,7 @@ pub fn write_pvd(out: &mut impl Write, files: &[(f64, String)]) -> Result<(), Ex
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>"
     )?;
     for (time, file) in files {
-        writeln!(
-            out,
-            "    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{}\"/>",
-            escaped(file)
-        )?;
+        writeln!(out, "    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{}\"/>", escaped(file))?;
     }
     writeln!(out, "  </Collection>\n</VTKFile>")?;
     Ok(())

@@ -65,10 +65,7 @@ impl Default for Settings {
 
 /// A name that programs take for an identifier: other characters become underscores.
 pub(super) fn identifier(name: &str) -> String {
-    let mut word: String = name
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .collect();
+    let mut word: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if !word.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
         word.insert(0, '_');
     }
@@ -77,7 +74,5 @@ pub(super) fn identifier(name: &str) -> String {
 
 /// Text on one line, without control characters.
 pub(super) fn one_line(text: &str) -> String {
-    text.chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }

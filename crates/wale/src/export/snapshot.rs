@@ -81,10 +81,7 @@ impl Snapshot {
                 return not_finite(format!("arc length {i} of yarn {yarn} at {} s", self.time));
             }
             if !(single(curve.radius) && curve.radius > 0.0) {
-                return Err(ExportError::Inconsistent(format!(
-                    "yarn {yarn} has the radius {} m",
-                    curve.radius
-                )));
+                return Err(ExportError::Inconsistent(format!("yarn {yarn} has the radius {} m", curve.radius)));
             }
             let last = curve.pass.iter().max().map_or(0, |p| *p as usize + 1);
             if let Some(field) = self.fields.iter().find(|f| f.values.len() < last) {
@@ -120,9 +117,7 @@ impl Snapshots for Vec<Snapshot> {
         self.len()
     }
     fn snapshot(&mut self, index: usize) -> Result<Snapshot, Box<dyn Error + Send + Sync>> {
-        self.get(index)
-            .cloned()
-            .ok_or_else(|| format!("there are {} frames", self.len()).into())
+        self.get(index).cloned().ok_or_else(|| format!("there are {} frames", self.len()).into())
     }
 }
 
@@ -147,9 +142,7 @@ where
     }
     fn snapshot(&mut self, index: usize) -> Result<Snapshot, Box<dyn Error + Send + Sync>> {
         let frame = (self.read)(index)?;
-        if frame.positions.len() != self.network.node_count()
-            || frame.sliding.len() != self.network.pass_count()
-        {
+        if frame.positions.len() != self.network.node_count() || frame.sliding.len() != self.network.pass_count() {
             return Err("the frame belongs to another fabric".into());
         }
         Ok(Snapshot::of(self.network, &frame, &self.settings))
@@ -157,13 +150,8 @@ where
 }
 
 /// A checked snapshot.
-pub(super) fn checked(
-    snapshots: &mut dyn Snapshots,
-    index: usize,
-) -> Result<Snapshot, ExportError> {
-    let snapshot = snapshots
-        .snapshot(index)
-        .map_err(|source| ExportError::Frame { index, source })?;
+pub(super) fn checked(snapshots: &mut dyn Snapshots, index: usize) -> Result<Snapshot, ExportError> {
+    let snapshot = snapshots.snapshot(index).map_err(|source| ExportError::Frame { index, source })?;
     snapshot.check()?;
     Ok(snapshot)
 }

@@ -14,11 +14,7 @@ use crate::model::{Frame, Network};
 fn lifted(network: &Network, time: f64) -> Frame {
     Frame {
         time,
-        positions: network
-            .position
-            .iter()
-            .map(|x| *x + DVec3::Z * (x.x * x.y * 40.0 * time))
-            .collect(),
+        positions: network.position.iter().map(|x| *x + DVec3::Z * (x.x * x.y * 40.0 * time)).collect(),
         sliding: network.arc_length.clone(),
     }
 }
@@ -72,36 +68,22 @@ fn usda_has_every_point_of_every_frame_and_true_stage_units() {
         assert_eq!(line.matches('(').count(), n);
     }
     let last = snapshots[2].curves.last().unwrap().points.last().unwrap();
-    let end = format!(
-        "({:?}, {:?}, {:?})],",
-        last.x as f32, last.y as f32, last.z as f32
-    );
+    let end = format!("({:?}, {:?}, {:?})],", last.x as f32, last.y as f32, last.z as f32);
     assert!(samples[2].ends_with(&end), "{end}");
 }
 
 #[test]
 fn usda_refuses_frames_that_do_not_belong_together() {
-    let write = |mut snapshots: Vec<Snapshot>| {
-        write_usda(&mut Vec::new(), &mut snapshots, &Settings::default())
-    };
+    let write = |mut snapshots: Vec<Snapshot>| write_usda(&mut Vec::new(), &mut snapshots, &Settings::default());
     let mut other = run(2);
     other[1].curves.pop();
-    assert!(matches!(
-        write(other),
-        Err(ExportError::Changed { index: 1 })
-    ));
+    assert!(matches!(write(other), Err(ExportError::Changed { index: 1 })));
     let mut backwards = run(3);
     backwards.swap(0, 1);
-    assert!(matches!(
-        write(backwards),
-        Err(ExportError::Order { index: 1 })
-    ));
+    assert!(matches!(write(backwards), Err(ExportError::Order { index: 1 })));
     assert!(matches!(write(vec![]), Err(ExportError::NoFrames)));
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        let settings = Settings {
-            frames_per_second: rate,
-            ..Settings::default()
-        };
+        let settings = Settings { frames_per_second: rate, ..Settings::default() };
         assert!(write_usda(&mut Vec::new(), &mut run(1), &settings).is_err());
     }
 }
@@ -118,13 +100,7 @@ fn vtp_offsets_meet_the_arrays_they_name() {
     let mut names = Vec::new();
     let mut end = mark;
     for line in xml.lines().filter(|l| l.contains("format=\"appended\"")) {
-        let value = |key: &str| {
-            line.split(&format!("{key}=\""))
-                .nth(1)
-                .unwrap()
-                .split('"')
-                .next()
-        };
+        let value = |key: &str| line.split(&format!("{key}=\"")).nth(1).unwrap().split('"').next();
         let at = mark + value("offset").unwrap().parse::<usize>().unwrap();
         assert_eq!(at, end, "arrays lie one after the other");
         let length = u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize;
@@ -148,9 +124,7 @@ fn vtp_offsets_meet_the_arrays_they_name() {
 #[test]
 fn bcc_reads_back_as_written() {
     let mut snapshot = run(1).remove(0);
-    let ring: Vec<DVec3> = [0.0, 1.0, 2.0, 0.0]
-        .map(|t: f64| DVec3::new(t.cos(), t.sin(), 0.0))
-        .to_vec();
+    let ring: Vec<DVec3> = [0.0, 1.0, 2.0, 0.0].map(|t: f64| DVec3::new(t.cos(), t.sin(), 0.0)).to_vec();
     snapshot.curves.push(Curve {
         arc_length: vec![0.0; 4],
         pass: vec![0; 4],
@@ -203,10 +177,7 @@ fn bcc_reader_refuses_lies_without_believing_their_size() {
     ];
     for (k, lie) in lies.iter().enumerate() {
         let read = read_bcc(&mut lie.as_slice());
-        assert!(
-            matches!(read, Err(ExportError::Malformed { .. })),
-            "lie {k}"
-        );
+        assert!(matches!(read, Err(ExportError::Malformed { .. })), "lie {k}");
     }
     for cut in 0..good.len() {
         assert!(read_bcc(&mut &good[..cut]).is_err(), "cut at {cut}");
@@ -216,12 +187,7 @@ fn bcc_reader_refuses_lies_without_believing_their_size() {
 #[test]
 fn obj_and_ply_hold_the_same_closed_tubes() {
     let snapshot = run(1).remove(0);
-    let settings = Settings {
-        sides: 5,
-        plies: 2,
-        twist: 300.0,
-        ..Settings::default()
-    };
+    let settings = Settings { sides: 5, plies: 2, twist: 300.0, ..Settings::default() };
     let obj = String::from_utf8(written(|out| write_obj(out, &snapshot, &settings))).unwrap();
     let count = |start: &str| obj.lines().filter(|l| l.starts_with(start)).count();
     let (vertices, faces) = (count("v "), count("f "));
@@ -241,10 +207,7 @@ fn obj_and_ply_hold_the_same_closed_tubes() {
     assert!(header.contains(&format!("element vertex {vertices}\n")));
     assert!(header.contains(&format!("element face {faces}\n")));
     // Six floats, three bytes, yarn, arc length and stretch; a count and three indices.
-    assert_eq!(
-        ply.len() - end,
-        vertices * (24 + 3 + 4 + 4 + 4) + faces * 13
-    );
+    assert_eq!(ply.len() - end, vertices * (24 + 3 + 4 + 4 + 4) + faces * 13);
     // Closed tubes that face outwards have positive volume.
     let at = |i: usize| {
         let b = &ply[end + i * 39..];
@@ -261,10 +224,7 @@ fn obj_and_ply_hold_the_same_closed_tubes() {
     // Two plies of half the radius; a pentagon fills 0.757 of its circle. Yarns are longer than straight ones.
     let length = 4.0 * 10e-3 + 5.0 * 8e-3;
     let expected = length * 2.0 * std::f64::consts::PI * 0.2e-3f64.powi(2) * 0.757;
-    assert!(
-        volume > expected && volume < 1.5 * expected,
-        "{volume} {expected}"
-    );
+    assert!(volume > expected && volume < 1.5 * expected, "{volume} {expected}");
 }
 
 #[test]
@@ -286,10 +246,7 @@ fn the_door_names_files_and_links_them() {
     assert!(path("two.0001.obj").is_file());
     let left: Vec<_> = fs::read_dir(folder.path())
         .unwrap()
-        .filter(|f| {
-            f.as_ref()
-                .is_ok_and(|f| f.path().extension().is_some_and(|e| e == "part"))
-        })
+        .filter(|f| f.as_ref().is_ok_and(|f| f.path().extension().is_some_and(|e| e == "part")))
         .collect();
     assert!(left.is_empty());
 }
@@ -301,10 +258,7 @@ fn formats_are_known_by_their_extension() {
         assert_eq!(Format::of_path(Path::new(&name)), Ok(format));
     }
     let error = Format::of_path(Path::new("a.fbx")).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "`fbx` is no export format; there are usda, vtp, pvd, bcc, obj, ply"
-    );
+    assert_eq!(error.to_string(), "`fbx` is no export format; there are usda, vtp, pvd, bcc, obj, ply");
     assert!(Format::of_path(Path::new("usda")).is_err());
 }
 

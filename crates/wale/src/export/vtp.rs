@@ -29,11 +29,7 @@ enum Section {
 ///
 /// # Errors
 /// [`ExportError::NotFinite`] and what the stream returns.
-pub fn write_vtp(
-    out: &mut impl Write,
-    snapshot: &Snapshot,
-    settings: &Settings,
-) -> Result<(), ExportError> {
+pub fn write_vtp(out: &mut impl Write, snapshot: &Snapshot, settings: &Settings) -> Result<(), ExportError> {
     snapshot.check()?;
     let arrays = arrays(snapshot, settings);
     let points: usize = snapshot.drawn().map(|(_, c)| c.points.len()).sum();
@@ -79,10 +75,7 @@ pub fn write_vtp(
         }
         writeln!(out, "      </{tag}>")?;
     }
-    write!(
-        out,
-        "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_"
-    )?;
+    write!(out, "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_")?;
     for array in &arrays {
         out.write_all(&(array.bytes.len() as u64).to_le_bytes())?;
         out.write_all(&array.bytes)?;
@@ -109,14 +102,7 @@ fn arrays(snapshot: &Snapshot, settings: &Settings) -> Vec<Array> {
     let point = Section::PointData;
     let mut arrays = vec![
         array(point, "radius", "m", "Float32", 1, singles(radii)),
-        array(
-            point,
-            "rest_arc_length",
-            "m",
-            "Float32",
-            1,
-            singles(lengths),
-        ),
+        array(point, "rest_arc_length", "m", "Float32", 1, singles(lengths)),
         array(point, "pass", "", "UInt32", 1, pass_bytes),
     ];
     for field in &snapshot.fields {
@@ -126,9 +112,7 @@ fn arrays(snapshot: &Snapshot, settings: &Settings) -> Vec<Array> {
     }
     let yarns = snapshot.drawn().flat_map(|(yarn, _)| yarn.to_le_bytes());
     let colors = curves().flat_map(|c| c.color);
-    let places = curves()
-        .flat_map(|c| &c.points)
-        .flat_map(|p| settings.up.turn(*p).to_array());
+    let places = curves().flat_map(|c| &c.points).flat_map(|p| settings.up.turn(*p).to_array());
     let count: usize = curves().map(|c| c.points.len()).sum();
     let connectivity = (0..count as u64).flat_map(u64::to_le_bytes).collect();
     let mut end = 0u64;
@@ -141,14 +125,7 @@ fn arrays(snapshot: &Snapshot, settings: &Settings) -> Vec<Array> {
     arrays.extend([
         array(Section::CellData, "yarn", "", "UInt32", 1, yarns.collect()),
         array(Section::CellData, "color", "", "UInt8", 3, colors.collect()),
-        array(
-            Section::Points,
-            "Points",
-            "m",
-            "Float32",
-            3,
-            singles(places),
-        ),
+        array(Section::Points, "Points", "m", "Float32", 3, singles(places)),
         array(Section::Lines, "connectivity", "", "Int64", 1, connectivity),
         array(Section::Lines, "offsets", "", "Int64", 1, offsets),
     ]);
@@ -162,9 +139,5 @@ fn singles(values: impl Iterator<Item = f64>) -> Vec<u8> {
 
 /// Text for XML.
 pub(super) fn escaped(text: &str) -> String {
-    one_line(text)
-        .replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    one_line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -15,18 +15,13 @@ pub(super) fn transported_frames(points: &[DVec3]) -> Vec<(DVec3, DVec3)> {
     for i in 1..points.len() {
         let reflect = |v: DVec3, mirror: DVec3| {
             let length_squared = mirror.length_squared();
-            if length_squared > 0.0 {
-                v - mirror * (2.0 * v.dot(mirror) / length_squared)
-            } else {
-                v
-            }
+            if length_squared > 0.0 { v - mirror * (2.0 * v.dot(mirror) / length_squared) } else { v }
         };
         let step = (points[i] - points[i - 1]).normalize_or_zero();
         let tangent = reflect(tangents[i - 1], step);
         let carried = reflect(reflect(normal, step), tangents[i] - tangent);
         // Against the drift of rounding.
-        normal = (carried - tangents[i] * carried.dot(tangents[i]))
-            .normalize_or(tangents[i].any_orthonormal_vector());
+        normal = (carried - tangents[i] * carried.dot(tangents[i])).normalize_or(tangents[i].any_orthonormal_vector());
         frames.push((tangents[i], normal));
     }
     frames
@@ -35,11 +30,8 @@ pub(super) fn transported_frames(points: &[DVec3]) -> Vec<(DVec3, DVec3)> {
 /// Unit tangents by differences of the neighbouring points.
 fn tangents(points: &[DVec3]) -> Vec<DVec3> {
     let n = points.len();
-    let mut last = points
-        .windows(2)
-        .map(|w| (w[1] - w[0]).normalize_or_zero())
-        .find(|d| *d != DVec3::ZERO)
-        .unwrap_or(DVec3::X);
+    let mut last =
+        points.windows(2).map(|w| (w[1] - w[0]).normalize_or_zero()).find(|d| *d != DVec3::ZERO).unwrap_or(DVec3::X);
     (0..n)
         .map(|i| {
             let difference = points[(i + 1).min(n - 1)] - points[i.saturating_sub(1)];
@@ -76,9 +68,7 @@ mod tests {
     fn hairpins_and_coincident_points_are_finite() {
         let points = [0.0, 0.0, 1.0, 1.0, 0.0, 2.0, 2.0].map(|x| DVec3::X * x);
         for (tangent, normal) in transported_frames(&points) {
-            assert!(
-                (tangent.length() - 1.0).abs() < 1e-12 && (normal.length() - 1.0).abs() < 1e-12
-            );
+            assert!((tangent.length() - 1.0).abs() < 1e-12 && (normal.length() - 1.0).abs() < 1e-12);
             assert!(tangent.dot(normal).abs() < 1e-12);
         }
         assert_eq!(transported_frames(&[DVec3::ONE]).len(), 1);

@@ -29,34 +29,18 @@ impl<'a> Passes<'a> {
         let mut after = vec![None; network.pass_count()];
         for y in 0..network.yarn_count() {
             let range = network.yarn_passes(YarnId::new(y));
-            let near = |pass| Neighbour {
-                pass,
-                shift: [0, 0],
-                turns: 0,
-            };
+            let near = |pass| Neighbour { pass, shift: [0, 0], turns: 0 };
             for p in range.clone() {
                 before[p] = (p > range.start).then(|| near(p - 1));
                 after[p] = (p + 1 < range.end).then(|| near(p + 1));
             }
             if let (Some((image, _)), false) = (network.yarn_closure[y], range.is_empty()) {
                 let shift = image.map(i32::from);
-                before[range.start] = Some(Neighbour {
-                    pass: range.end - 1,
-                    shift: shift.map(|s| -s),
-                    turns: -1,
-                });
-                after[range.end - 1] = Some(Neighbour {
-                    pass: range.start,
-                    shift,
-                    turns: 1,
-                });
+                before[range.start] = Some(Neighbour { pass: range.end - 1, shift: shift.map(|s| -s), turns: -1 });
+                after[range.end - 1] = Some(Neighbour { pass: range.start, shift, turns: 1 });
             }
         }
-        Self {
-            network,
-            before,
-            after,
-        }
+        Self { network, before, after }
     }
 
     /// The pass before `pass` on its yarn, if any.
@@ -71,28 +55,18 @@ impl<'a> Passes<'a> {
 
     /// Position \[m\] of the node image that a pass goes through.
     pub fn place(&self, positions: &[DVec3], periods: [DVec3; 2], pass: usize) -> DVec3 {
-        let image = self
-            .network
-            .pass_image
-            .get(pass)
-            .map_or([0, 0], |i| i.map(i32::from));
+        let image = self.network.pass_image.get(pass).map_or([0, 0], |i| i.map(i32::from));
         positions[self.network.pass_node[pass].index()] + translation(periods, image)
     }
 
     /// Position \[m\] of a neighbour, in the copy that adjoins the pass it was asked from.
-    pub fn neighbour_place(
-        &self,
-        positions: &[DVec3],
-        periods: [DVec3; 2],
-        neighbour: Neighbour,
-    ) -> DVec3 {
+    pub fn neighbour_place(&self, positions: &[DVec3], periods: [DVec3; 2], neighbour: Neighbour) -> DVec3 {
         self.place(positions, periods, neighbour.pass) + translation(periods, neighbour.shift)
     }
 
     /// For two passes that are neighbours on their yarn, the one that comes first.
     pub fn earlier(&self, a: PassId, b: PassId) -> Option<usize> {
-        let follows =
-            |p: PassId, q: PassId| self.after[p.index()].is_some_and(|n| n.pass == q.index());
+        let follows = |p: PassId, q: PassId| self.after[p.index()].is_some_and(|n| n.pass == q.index());
         if follows(a, b) {
             Some(a.index())
         } else if follows(b, a) {

@@ -38,11 +38,7 @@ pub fn ply_curves(yarn: &Curve, plies: u32, twist: f64) -> Vec<Curve> {
                     *point + (*normal * cos + tangent.cross(*normal) * sin) * center_distance
                 })
                 .collect();
-            Curve {
-                points,
-                radius: center_distance * share,
-                ..fine.clone()
-            }
+            Curve { points, radius: center_distance * share, ..fine.clone() }
         })
         .collect()
 }
@@ -60,16 +56,11 @@ fn refined(curve: &Curve, twist: f64) -> Curve {
         let rest = curve.arc_length[next] - curve.arc_length[i];
         let pieces = (rest * twist).abs() * PIECES_PER_TURN;
         // The cap bounds what absurd twists or slack yarns can ask for.
-        let pieces = if pieces.is_finite() {
-            pieces.ceil().clamp(1.0, 64.0)
-        } else {
-            1.0
-        };
+        let pieces = if pieces.is_finite() { pieces.ceil().clamp(1.0, 64.0) } else { 1.0 };
         let pieces = if next == i { 1 } else { pieces as usize };
         for k in 0..pieces {
             let t = k as f64 / pieces as f64;
-            fine.points
-                .push(curve.points[i].lerp(curve.points[next], t));
+            fine.points.push(curve.points[i].lerp(curve.points[next], t));
             fine.arc_length.push(curve.arc_length[i] + rest * t);
             fine.pass.push(curve.pass[i]);
         }
@@ -110,11 +101,7 @@ mod tests {
     #[test]
     fn positive_twist_is_a_right_handed_helix_with_the_asked_turns() {
         let ply = &ply_curves(&straight(), 3, 250.0)[0];
-        let turned: f64 = ply
-            .points
-            .windows(2)
-            .map(|w| w[0].truncate().angle_to(w[1].truncate()))
-            .sum();
+        let turned: f64 = ply.points.windows(2).map(|w| w[0].truncate().angle_to(w[1].truncate())).sum();
         // 250 turns/m over 10 mm; counter-clockwise seen against the direction of travel.
         assert!((turned - 2.5 * TAU).abs() < 1e-9, "{turned}");
         assert!(ply.points.len() > 30);

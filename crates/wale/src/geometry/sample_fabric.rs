@@ -8,15 +8,10 @@ use crate::model::{Network, NodeId, PassId, PassKind, SegmentKind};
 ///
 /// Wefts come first. At a crossing whose column and row sum to an even number the weft is in front.
 pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network {
-    let mut network = Network {
-        yarn_start: vec![0],
-        ..Network::default()
-    };
+    let mut network = Network { yarn_start: vec![0], ..Network::default() };
     for row in 0..rows {
         for column in 0..columns {
-            network
-                .position
-                .push(DVec3::new(column as f64, row as f64, 0.0) * spacing);
+            network.position.push(DVec3::new(column as f64, row as f64, 0.0) * spacing);
         }
     }
     let mut stacks = vec![Vec::new(); rows * columns];
@@ -42,26 +37,18 @@ pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network 
             network.pass_kind.push(PassKind::Edge);
             network.pass_slides.push(node < rows * columns);
             network.segment_kind.push(SegmentKind::Edge);
-            network
-                .arc_length
-                .push(network.position[node].distance(start));
+            network.arc_length.push(network.position[node].distance(start));
         }
-        network
-            .yarn_start
-            .push(u32::try_from(network.pass_node.len()).unwrap_or(u32::MAX));
+        network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap_or(u32::MAX));
         network.yarn_closure.push(None);
         network.yarn_color.push(color);
     };
     for row in 0..rows {
-        let crossings = (0..columns)
-            .map(|c| (row * columns + c, (row + c) % 2 == 0))
-            .collect();
+        let crossings = (0..columns).map(|c| (row * columns + c, (row + c) % 2 == 0)).collect();
         lay(crossings, DVec3::X * spacing, [220, 200, 160]);
     }
     for column in 0..columns {
-        let crossings = (0..rows)
-            .map(|r| (r * columns + column, (r + column) % 2 == 1))
-            .collect();
+        let crossings = (0..rows).map(|r| (r * columns + column, (r + column) % 2 == 1)).collect();
         lay(crossings, DVec3::Y * spacing, [60, 90, 160]);
     }
     network.front = vec![DVec3::Z; network.position.len()];

@@ -32,10 +32,7 @@ pub(super) fn sample(
     (0..samples).map(move |k| {
         let t = k as f64 / samples as f64;
         let (t2, t3) = (t * t, t * t * t);
-        start * (2.0 * t3 - 3.0 * t2 + 1.0)
-            + m0 * (t3 - 2.0 * t2 + t)
-            + end * (3.0 * t2 - 2.0 * t3)
-            + m1 * (t3 - t2)
+        start * (2.0 * t3 - 3.0 * t2 + 1.0) + m0 * (t3 - 2.0 * t2 + t) + end * (3.0 * t2 - 2.0 * t3) + m1 * (t3 - t2)
     })
 }
 
@@ -55,13 +52,7 @@ mod tests {
     fn a_short_piece_between_long_ones_does_not_overshoot() {
         // Uniform Catmull–Rom swings far out of this corner; the centripetal one stays within its own length.
         let (a, b) = (DVec3::ZERO, DVec3::new(0.01, 0.01, 0.0));
-        for point in sample(
-            DVec3::new(-1.0, 0.0, 0.0),
-            a,
-            b,
-            DVec3::new(0.01, 1.0, 0.0),
-            16,
-        ) {
+        for point in sample(DVec3::new(-1.0, 0.0, 0.0), a, b, DVec3::new(0.01, 1.0, 0.0), 16) {
             assert!(point.distance((a + b) / 2.0) < 0.015, "{point}");
         }
     }

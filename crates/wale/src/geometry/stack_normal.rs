@@ -30,9 +30,8 @@ pub(super) fn stack_normals(
     periods: [DVec3; 2],
     rest_periods: [DVec3; 2],
 ) -> Vec<DVec3> {
-    let fits: Vec<Fit> = (0..network.node_count())
-        .map(|i| Fit::at(i, network, passes, positions, periods, rest_periods))
-        .collect();
+    let fits: Vec<Fit> =
+        (0..network.node_count()).map(|i| Fit::at(i, network, passes, positions, periods, rest_periods)).collect();
     let mut normals: Vec<DVec3> = fits.iter().map(|fit| fit.normal).collect();
     for (i, fit) in fits.iter().enumerate() {
         if fit.trust >= 1.0 {
@@ -92,8 +91,7 @@ impl Fit {
             for neighbour in [passes.before(p), passes.after(p)].into_iter().flatten() {
                 let current = passes.neighbour_place(positions, periods, neighbour) - here;
                 let direction = current.normalize_or_zero();
-                let rest = (passes.neighbour_place(&network.position, rest_periods, neighbour)
-                    - here_rest)
+                let rest = (passes.neighbour_place(&network.position, rest_periods, neighbour) - here_rest)
                     .normalize_or_zero();
                 h1 += direction * rest.dot(first);
                 h2 += direction * rest.dot(second);
@@ -106,17 +104,8 @@ impl Fit {
         let area = h1.cross(h2);
         // At most 1, for two equally long and perpendicular columns.
         let flatness = 2.0 * area.length() / (h1.length_squared() + h2.length_squared());
-        let trust = if flatness.is_finite() {
-            (flatness / TRUSTED).min(1.0)
-        } else {
-            0.0
-        };
-        Self {
-            normal: area.normalize_or(carried),
-            trust,
-            along,
-            carried,
-        }
+        let trust = if flatness.is_finite() { (flatness / TRUSTED).min(1.0) } else { 0.0 };
+        Self { normal: area.normalize_or(carried), trust, along, carried }
     }
 }
 
@@ -151,20 +140,11 @@ mod tests {
         let network = plain_weave(4, 4, 2e-3);
         let passes = Passes::new(&network);
         // An affine map keeps segments coplanar; this one also shears and shrinks.
-        let map = glam::DMat3::from_cols(
-            DVec3::new(0.7, 0.2, -0.4),
-            DVec3::new(0.5, 0.9, 0.6),
-            DVec3::Z,
-        );
+        let map = glam::DMat3::from_cols(DVec3::new(0.7, 0.2, -0.4), DVec3::new(0.5, 0.9, 0.6), DVec3::Z);
         let positions: Vec<DVec3> = network.position.iter().map(|x| map * *x).collect();
         let none = [DVec3::ZERO; 2];
         let normals = stack_normals(&network, &passes, &positions, none, none);
-        let plane = fitted_plane(
-            &positions
-                .iter()
-                .map(|x| *x - positions[0])
-                .collect::<Vec<_>>(),
-        );
+        let plane = fitted_plane(&positions.iter().map(|x| *x - positions[0]).collect::<Vec<_>>());
         for (i, normal) in normals.iter().enumerate() {
             if network.stack(NodeId::new(i)).len() > 1 {
                 assert!(normal.dot(plane).abs() > 1.0 - 1e-9, "{normal} {plane}");
@@ -192,11 +172,7 @@ mod tests {
         let none = [DVec3::ZERO; 2];
         for squeeze in [0.0, 1e-300, 1e-12] {
             for positions in [
-                network
-                    .position
-                    .iter()
-                    .map(|x| DVec3::new(x.x, x.y * squeeze, 0.0))
-                    .collect(),
+                network.position.iter().map(|x| DVec3::new(x.x, x.y * squeeze, 0.0)).collect(),
                 vec![DVec3::splat(squeeze); network.node_count()],
             ] {
                 let positions: Vec<DVec3> = positions;

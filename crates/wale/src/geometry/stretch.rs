@@ -27,9 +27,11 @@ pub fn segment_stretch(network: &Network, frame: &Frame, periods: Option<[DVec3;
         };
         let closure = network.yarn_closure[yarns[p].index()].map_or(0.0, |(_, length)| length);
         let rest = frame.sliding[next.pass] + f64::from(next.turns) * closure - frame.sliding[p];
-        let length = passes
-            .neighbour_place(&frame.positions, periods, next)
-            .distance(passes.place(&frame.positions, periods, p));
+        let length = passes.neighbour_place(&frame.positions, periods, next).distance(passes.place(
+            &frame.positions,
+            periods,
+            p,
+        ));
         if rest > 0.0 {
             stretch[p] = length / rest - 1.0;
         }
@@ -47,11 +49,7 @@ mod tests {
         let network = plain_weave(3, 2, 1e-3);
         let frame = Frame {
             time: 0.0,
-            positions: network
-                .position
-                .iter()
-                .map(|x| DVec3::new(x.x * 1.1, x.y, x.z))
-                .collect(),
+            positions: network.position.iter().map(|x| DVec3::new(x.x * 1.1, x.y, x.z)).collect(),
             sliding: network.arc_length.clone(),
         };
         let stretch = segment_stretch(&network, &frame, None);

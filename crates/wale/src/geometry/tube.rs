@@ -84,11 +84,7 @@ mod tests {
     #[test]
     fn the_tube_of_a_straight_yarn_is_a_closed_prism_facing_outwards() {
         let curve = Curve {
-            points: vec![
-                DVec3::ONE,
-                DVec3::new(1.0, 1.0, 2.0),
-                DVec3::new(1.0, 1.0, 4.0),
-            ],
+            points: vec![DVec3::ONE, DVec3::new(1.0, 1.0, 2.0), DVec3::new(1.0, 1.0, 4.0)],
             arc_length: vec![0.0, 1.0, 3.0],
             pass: vec![0, 0, 1],
             radius: 0.1,
@@ -99,9 +95,7 @@ mod tests {
         assert!((volume(&mesh) - prism).abs() < 1e-12, "{}", volume(&mesh));
         for face in &mesh.faces {
             let [a, b, c] = face.map(|i| i as usize);
-            let flat = (mesh.vertices[b] - mesh.vertices[a])
-                .cross(mesh.vertices[c] - mesh.vertices[a])
-                .normalize();
+            let flat = (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).normalize();
             assert!(flat.dot(mesh.normals[a]) > 0.9);
         }
     }

@@ -32,12 +32,7 @@ impl CurveSettings {
     /// Six pieces a segment, yarns led fully around each other.
     #[must_use]
     pub fn new(radius: f64) -> Self {
-        Self {
-            radius,
-            samples_per_segment: 6,
-            clasp: 1.0,
-            periods: None,
-        }
+        Self { radius, samples_per_segment: 6, clasp: 1.0, periods: None }
     }
 }
 
@@ -65,9 +60,7 @@ pub fn curves(network: &Network, frame: &Frame, settings: &CurveSettings) -> Vec
         claspings: claspings(network, frame, settings, &passes, &normals),
         passes,
     };
-    (0..network.yarn_count())
-        .map(|y| drawing.curve(YarnId::new(y)))
-        .collect()
+    (0..network.yarn_count()).map(|y| drawing.curve(YarnId::new(y))).collect()
 }
 
 /// Where each pass is drawn \[m\]: its node, offset along the node's normal by its place in the stack.
@@ -79,9 +72,8 @@ fn offset_points(
     normals: &[DVec3],
     periods: [DVec3; 2],
 ) -> Vec<DVec3> {
-    let mut points: Vec<DVec3> = (0..network.pass_count())
-        .map(|p| passes.place(&frame.positions, periods, p))
-        .collect();
+    let mut points: Vec<DVec3> =
+        (0..network.pass_count()).map(|p| passes.place(&frame.positions, periods, p)).collect();
     for (node, normal) in normals.iter().enumerate() {
         let stack = network.stack(crate::model::NodeId::new(node));
         let middle = stack.len().saturating_sub(1) as f64 / 2.0;
@@ -114,11 +106,7 @@ fn claspings(
         let normal = normals[q0.index()] + normals[q1.index()];
         let side = axis.cross(normal).normalize_or_zero() * (settings.radius * settings.clasp);
         let depth = |node, pass| network.stack(node).iter().position(|p| *p == pass);
-        let depths: Vec<_> = stitch
-            .passes
-            .iter()
-            .map(|[a, b]| (depth(q0, *a), depth(q1, *b)))
-            .collect();
+        let depths: Vec<_> = stitch.passes.iter().map(|[a, b]| (depth(q0, *a), depth(q1, *b))).collect();
         for (i, [a, b]) in stitch.passes.iter().enumerate() {
             let Some(first) = passes.earlier(*a, *b) else {
                 continue;
@@ -150,9 +138,7 @@ fn segment_between(
     from: usize,
     to: usize,
 ) -> DVec3 {
-    let periods = settings
-        .periods
-        .unwrap_or(network.periods.unwrap_or_default());
+    let periods = settings.periods.unwrap_or(network.periods.unwrap_or_default());
     let shift = [passes.before(from), passes.after(from)]
         .into_iter()
         .flatten()
@@ -220,11 +206,8 @@ impl Drawing<'_> {
             }
         }
         let period = closure.map(|(image, _)| translation(self.periods, image.map(i32::from)));
-        let mut curve = Curve {
-            radius: self.settings.radius,
-            color: self.network.yarn_color[yarn.index()],
-            ..Curve::default()
-        };
+        let mut curve =
+            Curve { radius: self.settings.radius, color: self.network.yarn_color[yarn.index()], ..Curve::default() };
         join(&knots, period, &mut curve);
         curve
     }
@@ -252,9 +235,7 @@ fn join(knots: &[Knot], period: Option<DVec3>, curve: &mut Curve) {
         for (k, point) in points.enumerate() {
             let t = k as f64 / start.samples as f64;
             curve.points.push(point);
-            curve
-                .arc_length
-                .push(start.arc_length + (end.arc_length - start.arc_length) * t);
+            curve.arc_length.push(start.arc_length + (end.arc_length - start.arc_length) * t);
             curve.pass.push(start.pass);
         }
     }
@@ -271,11 +252,7 @@ mod tests {
     use glam::{DQuat, EulerRot};
 
     fn frame_of(network: &Network) -> Frame {
-        Frame {
-            time: 0.0,
-            positions: network.position.clone(),
-            sliding: network.arc_length.clone(),
-        }
+        Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() }
     }
 
     /// The point of a curve at a pass: the first one that carries it.
@@ -317,11 +294,7 @@ mod tests {
         let mut frame = frame_of(&network);
         for (i, x) in frame.positions.iter_mut().enumerate() {
             // A fixed irregular crumple.
-            *x += DVec3::new(
-                (i as f64 * 1.7).sin(),
-                (i as f64 * 2.3).cos(),
-                (i as f64).sin(),
-            ) * 0.4e-3;
+            *x += DVec3::new((i as f64 * 1.7).sin(), (i as f64 * 2.3).cos(), (i as f64).sin()) * 0.4e-3;
         }
         let still = curves(&network, &frame, &settings);
         let turn = DQuat::from_euler(EulerRot::XYZ, 2.5, -0.7, 4.0);
@@ -362,10 +335,7 @@ mod tests {
         network.front.truncate(2);
         network.set_stacks(&[vec![crate::model::PassId(0)], vec![crate::model::PassId(1)]]);
         let periods = [DVec3::X * 2e-3, DVec3::Y * 2e-3];
-        let settings = CurveSettings {
-            periods: Some(periods),
-            ..CurveSettings::new(0.2e-3)
-        };
+        let settings = CurveSettings { periods: Some(periods), ..CurveSettings::new(0.2e-3) };
         let curve = &curves(&network, &frame_of(&network), &settings)[0];
         let n = curve.points.len();
         assert!(curve.points[n - 1].distance(curve.points[0] + periods[0]) < 1e-15);
