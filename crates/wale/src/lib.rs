@@ -3,6 +3,7 @@
 pub mod contact;
 pub mod dynamics;
 pub mod energy;
+pub mod export;
 pub mod fabric;
 pub mod geometry;
 pub mod model;
