@@ -12,19 +12,24 @@ pub mod environment;
 pub mod error;
 pub mod frames;
 pub mod inputs;
+pub mod interrupted;
+mod layout;
 pub mod lock;
 pub mod log;
 pub mod metrics;
 pub mod run_folder;
 pub mod run_reader;
 pub mod status;
+#[cfg(test)]
+mod tests;
 
 pub use checkpoint::{Checkpoint, Checkpoints, Marks, SceneHash};
 pub use environment::Environment;
 pub use error::RecordError;
 pub use frames::Frames;
+pub use interrupted::Interrupted;
 pub use metrics::Column;
-pub use run_folder::{Interrupted, RunFolder, RunStart};
+pub use run_folder::{RunFolder, RunStart};
 pub use run_reader::RunReader;
 pub use status::Status;
 

@@ -6,9 +6,9 @@ use super::checkpoint::{Checkpoint, Checkpoints};
 use super::environment::Environment;
 use super::error::RecordError;
 use super::frames::Frames;
+use super::layout::{CHECKPOINTS, ENVIRONMENT, FRAMES, METRICS, SCENE, SUMMARY, read_status};
 use super::lock::FolderLock;
 use super::read_text;
-use super::run_folder::{CHECKPOINTS, ENVIRONMENT, FRAMES, METRICS, SCENE, SUMMARY, read_status};
 use super::status::Status;
 
 /// A run folder, opened to read.
