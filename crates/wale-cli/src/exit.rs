@@ -40,26 +40,17 @@ pub struct Failure {
 impl Failure {
     /// A failure with something to tell.
     pub fn new(code: Code, message: impl fmt::Display) -> Self {
-        Self {
-            code,
-            message: Some(format!("error: {message}")),
-        }
+        Self { code, message: Some(format!("error: {message}")) }
     }
 
     /// A failure whose message is a report with the place underlined.
     pub fn report(code: Code, report: &miette::Report) -> Self {
-        Self {
-            code,
-            message: Some(format!("{report:?}").trim_end().to_owned()),
-        }
+        Self { code, message: Some(format!("{report:?}").trim_end().to_owned()) }
     }
 
     /// An end that has been told already.
     pub fn silent(code: Code) -> Self {
-        Self {
-            code,
-            message: None,
-        }
+        Self { code, message: None }
     }
 
     /// A failure to read or write a file of the user's.
@@ -82,9 +73,7 @@ impl From<RecordError> for Failure {
 /// Runs the program to its exit code; a panic becomes [`Code::Bug`] and one clear line.
 pub fn guard(program: impl FnOnce() -> Result<(), Failure>) -> ExitCode {
     panic::set_hook(Box::new(|panic| {
-        let place = panic
-            .location()
-            .map_or_else(String::new, |place| format!(" at {place}"));
+        let place = panic.location().map_or_else(String::new, |place| format!(" at {place}"));
         let message = panic
             .payload()
             .downcast_ref::<String>()
@@ -127,10 +116,7 @@ mod tests {
         let path = Path::new("x").to_path_buf();
         let code = |error: RecordError| Failure::from(error).code;
         assert_eq!(code(RecordError::DiskFull { path: path.clone() }), Code::Io);
-        assert_eq!(
-            code(RecordError::Missing { path: path.clone() }),
-            Code::BadInput
-        );
+        assert_eq!(code(RecordError::Missing { path: path.clone() }), Code::BadInput);
         assert_eq!(code(RecordError::OtherScene { path }), Code::BadInput);
     }
 }

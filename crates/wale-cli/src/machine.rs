@@ -8,9 +8,7 @@ use crate::exit::{Code, Failure};
 /// operating system does not say.
 #[must_use]
 pub fn available_memory() -> Option<u64> {
-    let free = fs::read_to_string("/proc/meminfo")
-        .ok()
-        .and_then(|text| available_in(&text))?;
+    let free = fs::read_to_string("/proc/meminfo").ok().and_then(|text| available_in(&text))?;
     let confined = fs::read_to_string("/sys/fs/cgroup/memory.max")
         .ok()
         .and_then(|text| text.trim().parse().ok())
@@ -19,9 +17,7 @@ pub fn available_memory() -> Option<u64> {
 }
 
 fn available_in(meminfo: &str) -> Option<u64> {
-    let line = meminfo
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     kibibytes.checked_mul(1024)
 }
@@ -32,9 +28,7 @@ fn available_in(meminfo: &str) -> Option<u64> {
 /// A sentence, for text that is no size.
 pub fn parse_size(text: &str) -> Result<u64, String> {
     let text = text.trim();
-    let split = text
-        .find(|c: char| c.is_ascii_alphabetic() && !matches!(c, 'e' | 'E'))
-        .unwrap_or(text.len());
+    let split = text.find(|c: char| c.is_ascii_alphabetic() && !matches!(c, 'e' | 'E')).unwrap_or(text.len());
     let (number, unit) = text.split_at(split);
     let factor = match unit {
         "" | "B" => 1.0,
@@ -66,12 +60,7 @@ pub fn use_threads(threads: Option<usize>) -> Result<usize, Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads.unwrap_or(0))
         .build_global()
-        .map_err(|error| {
-            Failure::new(
-                Code::ResourceLimit,
-                format_args!("cannot start the threads: {error}"),
-            )
-        })?;
+        .map_err(|error| Failure::new(Code::ResourceLimit, format_args!("cannot start the threads: {error}")))?;
     Ok(rayon::current_num_threads())
 }
 

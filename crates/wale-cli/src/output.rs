@@ -11,10 +11,9 @@ use crate::exit::{Code, Failure};
 /// When standard output cannot be written, for instance on a full disk.
 pub fn line(text: Arguments<'_>) -> Result<(), Failure> {
     match writeln!(io::stdout(), "{text}") {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::new(
-            Code::Io,
-            format_args!("cannot write to standard output: {error}"),
-        )),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::new(Code::Io, format_args!("cannot write to standard output: {error}")))
+        }
         _ => Ok(()),
     }
 }
@@ -63,11 +62,7 @@ pub fn bytes(count: u64) -> String {
         value /= 1000.0;
         unit += 1;
     }
-    if unit == 0 {
-        format!("{count} B")
-    } else {
-        format!("{value:.1} {}", units[unit])
-    }
+    if unit == 0 { format!("{count} B") } else { format!("{value:.1} {}", units[unit]) }
 }
 
 /// A time span in the units that suit it.

@@ -42,16 +42,9 @@ impl Progress {
             }
             Voice::Bar(bar)
         } else {
-            Voice::Lines {
-                last: Instant::now(),
-            }
+            Voice::Lines { last: Instant::now() }
         };
-        Self {
-            voice,
-            began: Instant::now(),
-            span: [from, to],
-            steps: 0,
-        }
+        Self { voice, began: Instant::now(), span: [from, to], steps: 0 }
     }
 
     /// A step has been taken, and the simulated time is now `time` \[s\].
@@ -107,11 +100,7 @@ impl Progress {
 
 /// Wall time left \[s\] when a share of the simulated time took `elapsed` seconds.
 fn time_left(elapsed: f64, share: f64) -> f64 {
-    if share > 0.0 {
-        (elapsed / share - elapsed).max(0.0)
-    } else {
-        f64::INFINITY
-    }
+    if share > 0.0 { (elapsed / share - elapsed).max(0.0) } else { f64::INFINITY }
 }
 
 #[cfg(test)]

@@ -33,11 +33,7 @@ impl Signals {
         let checkpoint = Arc::new(AtomicBool::new(false));
         #[cfg(unix)]
         flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&checkpoint))?;
-        Ok(Self {
-            interrupted: raise(SIGINT)?,
-            terminated: raise(SIGTERM)?,
-            checkpoint,
-        })
+        Ok(Self { interrupted: raise(SIGINT)?, terminated: raise(SIGTERM)?, checkpoint })
     }
 
     /// How to end, once a signal has asked for it.

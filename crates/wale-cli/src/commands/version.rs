@@ -13,13 +13,7 @@ pub fn version(arguments: &Version) -> Result<(), Failure> {
         return output::json(&environment);
     }
     say!("wale {}", environment.version)?;
-    say!(
-        "{} on {}, {} threads, {}",
-        environment.os,
-        environment.architecture,
-        environment.threads,
-        environment.cpu
-    )?;
+    say!("{} on {}, {} threads, {}", environment.os, environment.architecture, environment.threads, environment.cpu)?;
     say!("built with {}", environment.features.join(", "))?;
     say!("run folder format {}", environment.format)
 }

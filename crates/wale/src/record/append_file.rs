@@ -21,11 +21,7 @@ impl AppendFile {
     /// When it cannot be made.
     pub fn create(path: &Path) -> Result<Self, RecordError> {
         let file = File::create(path).map_err(|e| RecordError::from_io(path, "create", e))?;
-        Ok(Self {
-            path: path.to_path_buf(),
-            file,
-            length: 0,
-        })
+        Ok(Self { path: path.to_path_buf(), file, length: 0 })
     }
 
     /// Opens a file and drops all behind `length`: whole lines of later steps and a line that a kill cut through.
@@ -34,19 +30,12 @@ impl AppendFile {
     /// [`RecordError::Damaged`] when the file is shorter than that, or has no end of line there.
     pub fn resume(path: &Path, length: u64) -> Result<Self, RecordError> {
         check_length(path, length)?;
-        let mut file = OpenOptions::new()
-            .write(true)
-            .open(path)
-            .map_err(|e| RecordError::from_io(path, "open", e))?;
+        let mut file = OpenOptions::new().write(true).open(path).map_err(|e| RecordError::from_io(path, "open", e))?;
         file.set_len(length)
             .and_then(|()| file.seek(SeekFrom::End(0)))
             .and_then(|_| file.sync_all())
             .map_err(|e| RecordError::from_io(path, "cut back", e))?;
-        Ok(Self {
-            path: path.to_path_buf(),
-            file,
-            length,
-        })
+        Ok(Self { path: path.to_path_buf(), file, length })
     }
 
     /// Appends a line; `line` ends in a line feed. A failed write leaves no half line if that can be helped.
@@ -68,9 +57,7 @@ impl AppendFile {
     /// # Errors
     /// When the disk fails.
     pub fn sync(&self) -> Result<u64, RecordError> {
-        self.file
-            .sync_all()
-            .map_err(|error| RecordError::from_io(&self.path, "sync", error))?;
+        self.file.sync_all().map_err(|error| RecordError::from_io(&self.path, "sync", error))?;
         Ok(self.length)
     }
 
@@ -86,16 +73,11 @@ impl AppendFile {
 /// # Errors
 /// [`RecordError::Damaged`] if not.
 pub fn check_length(path: &Path, length: u64) -> Result<(), RecordError> {
-    let damaged = |reason: String| RecordError::Damaged {
-        path: path.to_path_buf(),
-        reason,
-    };
+    let damaged = |reason: String| RecordError::Damaged { path: path.to_path_buf(), reason };
     let mut file = File::open(path).map_err(|error| reading(path, error))?;
     let found = file.metadata().map_err(|error| reading(path, error))?.len();
     if found < length {
-        return Err(damaged(format!(
-            "{found} bytes long, and the checkpoint was taken at {length}"
-        )));
+        return Err(damaged(format!("{found} bytes long, and the checkpoint was taken at {length}")));
     }
     if length > 0 {
         let mut last = [0];
@@ -138,10 +120,7 @@ mod tests {
         let path = folder.path().join("rows");
         std::fs::write(&path, "one\ntwo\n").unwrap();
         for length in [5, 9, u64::MAX] {
-            assert!(matches!(
-                AppendFile::resume(&path, length),
-                Err(RecordError::Damaged { .. })
-            ));
+            assert!(matches!(AppendFile::resume(&path, length), Err(RecordError::Damaged { .. })));
         }
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "one\ntwo\n");
     }
@@ -150,9 +129,6 @@ mod tests {
     #[test]
     fn a_full_disk_is_told() {
         let mut file = AppendFile::create(Path::new("/dev/full")).unwrap();
-        assert!(matches!(
-            file.append(b"x\n"),
-            Err(RecordError::DiskFull { .. })
-        ));
+        assert!(matches!(file.append(b"x\n"), Err(RecordError::DiskFull { .. })));
     }
 }

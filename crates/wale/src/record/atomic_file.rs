@@ -18,10 +18,7 @@ const PARTIAL: &str = ".partial";
 ///
 /// # Errors
 /// [`RecordError::DiskFull`], [`RecordError::NotWritable`] and other failures of the file system, or of `write`.
-pub fn write_atomically(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), RecordError> {
+pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), RecordError> {
     let temporary = temporary_path(path)?;
     let written = write_and_sync(&temporary, write).and_then(|()| fs::rename(&temporary, path));
     if let Err(error) = written {
@@ -51,8 +48,7 @@ pub fn remove_leftovers(folder: &Path) -> Result<(), RecordError> {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         if name.starts_with('.') && name.ends_with(PARTIAL) {
-            fs::remove_file(entry.path())
-                .map_err(|error| RecordError::from_io(&entry.path(), "remove", error))?;
+            fs::remove_file(entry.path()).map_err(|error| RecordError::from_io(&entry.path(), "remove", error))?;
         }
     }
     Ok(())
@@ -67,10 +63,7 @@ pub(crate) fn sync_folder(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-fn write_and_sync(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
+fn write_and_sync(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut file = BufWriter::with_capacity(1 << 18, File::create(path)?);
     write(&mut file)?;
     let file = file.into_inner().map_err(io::IntoInnerError::into_error)?;
@@ -147,10 +140,7 @@ mod tests {
     fn a_missing_folder_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("nowhere").join("a.txt");
-        assert!(matches!(
-            write_bytes_atomically(&path, b"x"),
-            Err(RecordError::Missing { .. })
-        ));
+        assert!(matches!(write_bytes_atomically(&path, b"x"), Err(RecordError::Missing { .. })));
     }
 
     #[test]

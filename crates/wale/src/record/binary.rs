@@ -93,11 +93,7 @@ impl<'a> BinaryWriter<'a> {
     /// An empty container of a kind of file.
     #[must_use]
     pub fn new(magic: [u8; 8], version: u32) -> Self {
-        Self {
-            magic,
-            version,
-            sections: Vec::new(),
-        }
+        Self { magic, version, sections: Vec::new() }
     }
     /// Adds a section of floats, kept to the bit.
     ///
@@ -136,10 +132,7 @@ impl<'a> BinaryWriter<'a> {
     /// # Errors
     /// Those of the writer.
     pub fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut out = Summed {
-            out,
-            sum: crc32fast::Hasher::new(),
-        };
+        let mut out = Summed { out, sum: crc32fast::Hasher::new() };
         out.put(&self.magic)?;
         out.put(&self.version.to_le_bytes())?;
         let sections = u32::try_from(self.sections.len()).map_err(io::Error::other)?;
@@ -200,36 +193,22 @@ impl<'a> BinaryReader<'a> {
     ///
     /// # Errors
     /// A [`BinaryError`] for anything but a whole, unchanged container of this magic and version.
-    pub fn parse(
-        bytes: &'a [u8],
-        what: &str,
-        magic: [u8; 8],
-        version: u32,
-    ) -> Result<Self, BinaryError> {
+    pub fn parse(bytes: &'a [u8], what: &str, magic: [u8; 8], version: u32) -> Result<Self, BinaryError> {
         let length = bytes.len() as u64;
         if bytes.get(..8).is_none_or(|first| first != magic) {
             return Err(BinaryError::Magic(what.to_owned()));
         }
         if bytes.len() < HEADER + CHECKSUM {
-            return Err(BinaryError::Length {
-                found: length,
-                expected: (HEADER + CHECKSUM) as u64,
-            });
+            return Err(BinaryError::Length { found: length, expected: (HEADER + CHECKSUM) as u64 });
         }
         // The version is told before the checksum is asked: another version may sum otherwise.
         let found = word32(&bytes[8..]);
         if found != version {
-            return Err(BinaryError::Version {
-                found,
-                expected: version,
-            });
+            return Err(BinaryError::Version { found, expected: version });
         }
         let declared = word64(&bytes[16..]);
         if declared != length {
-            return Err(BinaryError::Length {
-                found: length,
-                expected: declared,
-            });
+            return Err(BinaryError::Length { found: length, expected: declared });
         }
         let (body, sum) = bytes.split_at(bytes.len() - CHECKSUM);
         if crc32fast::hash(body) != word32(sum) {
@@ -288,18 +267,14 @@ impl<'a> BinaryReader<'a> {
     /// # Errors
     /// [`BinaryError::Section`], also for another count.
     pub fn integer_array<const N: usize>(&self, name: &str) -> Result<[u64; N], BinaryError> {
-        self.integers(name)?
-            .try_into()
-            .map_err(|_| BinaryError::Section(name.to_owned()))
+        self.integers(name)?.try_into().map_err(|_| BinaryError::Section(name.to_owned()))
     }
     /// Exactly so many floats of a section.
     ///
     /// # Errors
     /// [`BinaryError::Section`], also for another count.
     pub fn float_array<const N: usize>(&self, name: &str) -> Result<[f64; N], BinaryError> {
-        self.floats(name)?
-            .try_into()
-            .map_err(|_| BinaryError::Section(name.to_owned()))
+        self.floats(name)?.try_into().map_err(|_| BinaryError::Section(name.to_owned()))
     }
     /// The bytes of a section.
     ///
@@ -344,10 +319,7 @@ mod tests {
 
     fn container(floats: &[f64], integers: &[u64], bytes: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
-        let writer = BinaryWriter::new(MAGIC, 1)
-            .floats("f", floats)
-            .integers("i", integers)
-            .bytes("b", bytes);
+        let writer = BinaryWriter::new(MAGIC, 1).floats("f", floats).integers("i", integers).bytes("b", bytes);
         writer.write_to(&mut out).unwrap();
         assert_eq!(writer.byte_count(), out.len() as u64);
         out
@@ -372,10 +344,7 @@ mod tests {
         }
         let mut bytes = container(&[1.0], &[], &[]);
         bytes[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
-        assert_eq!(
-            parse(&with_right_sum(bytes)).unwrap_err(),
-            BinaryError::Table("more sections than bytes")
-        );
+        assert_eq!(parse(&with_right_sum(bytes)).unwrap_err(), BinaryError::Table("more sections than bytes"));
     }
 
     #[test]
@@ -387,10 +356,7 @@ mod tests {
         );
         assert_eq!(
             BinaryReader::parse(&bytes, "test", MAGIC, 2).unwrap_err(),
-            BinaryError::Version {
-                found: 1,
-                expected: 2
-            }
+            BinaryError::Version { found: 1, expected: 2 }
         );
     }
 

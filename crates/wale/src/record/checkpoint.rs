@@ -73,26 +73,17 @@ impl Checkpoints {
     /// Length of the checkpoint of a state \[bytes\].
     #[must_use]
     pub fn byte_count(state: &State) -> u64 {
-        with_writer(state, &[0; 32], Marks::default(), |writer| {
-            writer.byte_count()
-        })
+        with_writer(state, &[0; 32], Marks::default(), |writer| writer.byte_count())
     }
 
     /// Saves a state, points `LATEST` to it, and drops all but two generations.
     ///
     /// # Errors
     /// A full disk and other failures to write; the older checkpoints are then still there.
-    pub fn save(
-        &self,
-        state: &State,
-        scene: &SceneHash,
-        marks: Marks,
-    ) -> Result<PathBuf, RecordError> {
+    pub fn save(&self, state: &State, scene: &SceneHash, marks: Marks) -> Result<PathBuf, RecordError> {
         let name = format!("step_{:08}.ckpt", state.step);
         let path = self.folder.join(&name);
-        with_writer(state, scene, marks, |writer| {
-            write_atomically(&path, |out| writer.write_to(out))
-        })?;
+        with_writer(state, scene, marks, |writer| write_atomically(&path, |out| writer.write_to(out)))?;
         write_bytes_atomically(&self.folder.join(LATEST), format!("{name}\n").as_bytes())?;
         let mut others = self.list()?;
         others.retain(|(step, _)| *step != state.step);
@@ -126,21 +117,14 @@ impl Checkpoints {
         }
         for path in candidates.drain(..) {
             match read(&path).and_then(|checkpoint| {
-                fits(&checkpoint).map_err(|reason| RecordError::Damaged {
-                    path: path.clone(),
-                    reason,
-                })?;
+                fits(&checkpoint).map_err(|reason| RecordError::Damaged { path: path.clone(), reason })?;
                 Ok(checkpoint)
             }) {
                 Ok(checkpoint) => {
                     if scene.is_some_and(|scene| *scene != checkpoint.scene) {
                         return Err(RecordError::OtherScene { path });
                     }
-                    return Ok(Found {
-                        checkpoint,
-                        path,
-                        passed_over,
-                    });
+                    return Ok(Found { checkpoint, path, passed_over });
                 }
                 Err(error @ RecordError::Damaged { .. }) => passed_over.push(error.to_string()),
                 Err(error) => return Err(error),
@@ -166,8 +150,7 @@ impl Checkpoints {
     pub fn remove_after(&self, step: u64) -> Result<(), RecordError> {
         for (later, path) in self.list()? {
             if later > step {
-                fs::remove_file(&path)
-                    .map_err(|error| RecordError::from_io(&path, "remove", error))?;
+                fs::remove_file(&path).map_err(|error| RecordError::from_io(&path, "remove", error))?;
             }
         }
         sync_folder(&self.folder).map_err(|error| RecordError::from_io(&self.folder, "sync", error))
@@ -213,10 +196,7 @@ pub fn read(path: &Path) -> Result<Checkpoint, RecordError> {
             found: format!("checkpoint format {found}"),
             expected: format!("checkpoint format {expected}"),
         },
-        error => RecordError::Damaged {
-            path: path.to_path_buf(),
-            reason: error.to_string(),
-        },
+        error => RecordError::Damaged { path: path.to_path_buf(), reason: error.to_string() },
     })
 }
 
@@ -244,52 +224,22 @@ pub fn parse(bytes: &[u8]) -> Result<Checkpoint, BinaryError> {
     {
         return Err(BinaryError::Table("lengths of the state's parts disagree"));
     }
-    let finite = [
-        &state.coordinates,
-        &state.velocities,
-        &state.anchors,
-        &state.obstacle_anchors,
-        &state.grip_memory,
-    ]
-    .into_iter()
-    .flatten()
-    .chain([&time, &next_step_size])
-    .all(|value| value.is_finite());
+    let finite = [&state.coordinates, &state.velocities, &state.anchors, &state.obstacle_anchors, &state.grip_memory]
+        .into_iter()
+        .flatten()
+        .chain([&time, &next_step_size])
+        .all(|value| value.is_finite());
     if !finite {
         return Err(BinaryError::Table("numbers that are not finite"));
     }
-    let scene = reader
-        .bytes("scene_sha256")?
-        .try_into()
-        .map_err(|_| BinaryError::Section("scene_sha256".to_owned()))?;
-    Ok(Checkpoint {
-        state,
-        scene,
-        marks: Marks {
-            frames,
-            metrics,
-            log,
-        },
-    })
+    let scene =
+        reader.bytes("scene_sha256")?.try_into().map_err(|_| BinaryError::Section("scene_sha256".to_owned()))?;
+    Ok(Checkpoint { state, scene, marks: Marks { frames, metrics, log } })
 }
 
-fn with_writer<T>(
-    state: &State,
-    scene: &SceneHash,
-    marks: Marks,
-    then: impl FnOnce(BinaryWriter<'_>) -> T,
-) -> T {
+fn with_writer<T>(state: &State, scene: &SceneHash, marks: Marks, then: impl FnOnce(BinaryWriter<'_>) -> T) -> T {
     // Taken apart by name, so that a field added to the state cannot be forgotten here.
-    let State {
-        time,
-        step,
-        next_step_size,
-        coordinates,
-        velocities,
-        anchors,
-        obstacle_anchors,
-        grip_memory,
-    } = state;
+    let State { time, step, next_step_size, coordinates, velocities, anchors, obstacle_anchors, grip_memory } = state;
     let counters = [*step, marks.frames, marks.metrics, marks.log];
     let clock = [*time, *next_step_size];
     then(
@@ -339,16 +289,9 @@ mod tests {
     fn what_is_saved_is_loaded_and_two_are_kept() {
         let (folder, checkpoints) = checkpoints();
         for step in [0, 5, 120, 99_999_999, 123_456_789] {
-            let marks = Marks {
-                frames: step,
-                metrics: 2,
-                log: 3,
-            };
+            let marks = Marks { frames: step, metrics: 2, log: 3 };
             let path = checkpoints.save(&state(step), &SCENE, marks).unwrap();
-            assert_eq!(
-                fs::metadata(&path).unwrap().len(),
-                Checkpoints::byte_count(&state(step))
-            );
+            assert_eq!(fs::metadata(&path).unwrap().len(), Checkpoints::byte_count(&state(step)));
             let found = load(&checkpoints).unwrap();
             assert_eq!(found.checkpoint.state, state(step));
             assert_eq!(found.checkpoint.marks, marks);
@@ -356,31 +299,20 @@ mod tests {
         }
         let steps: Vec<u64> = checkpoints.list().unwrap().iter().map(|c| c.0).collect();
         assert_eq!(steps, [123_456_789, 99_999_999]);
-        assert_eq!(
-            fs::read_to_string(folder.path().join("LATEST")).unwrap(),
-            "step_123456789.ckpt\n"
-        );
+        assert_eq!(fs::read_to_string(folder.path().join("LATEST")).unwrap(), "step_123456789.ckpt\n");
     }
 
     #[test]
     fn cut_anywhere_the_previous_stands_in_and_is_told() {
         let (_folder, checkpoints) = checkpoints();
-        checkpoints
-            .save(&state(1), &SCENE, Marks::default())
-            .unwrap();
-        let path = checkpoints
-            .save(&state(2), &SCENE, Marks::default())
-            .unwrap();
+        checkpoints.save(&state(1), &SCENE, Marks::default()).unwrap();
+        let path = checkpoints.save(&state(2), &SCENE, Marks::default()).unwrap();
         let whole = fs::read(&path).unwrap();
         for length in (0..whole.len()).step_by(13) {
             fs::write(&path, &whole[..length]).unwrap();
             let found = load(&checkpoints).unwrap();
             assert_eq!(found.checkpoint.state, state(1));
-            assert!(
-                found.passed_over[0].contains("damaged"),
-                "{:?}",
-                found.passed_over
-            );
+            assert!(found.passed_over[0].contains("damaged"), "{:?}", found.passed_over);
         }
         fs::remove_file(&path).unwrap();
         let found = load(&checkpoints).unwrap();
@@ -392,19 +324,9 @@ mod tests {
     fn a_checkpoint_that_does_not_fit_is_passed_over() {
         let (_folder, checkpoints) = checkpoints();
         for step in 1..3 {
-            checkpoints
-                .save(&state(step), &SCENE, Marks::default())
-                .unwrap();
+            checkpoints.save(&state(step), &SCENE, Marks::default()).unwrap();
         }
-        let found = checkpoints
-            .load(None, |c| {
-                if c.state.step == 2 {
-                    Err("no".into())
-                } else {
-                    Ok(())
-                }
-            })
-            .unwrap();
+        let found = checkpoints.load(None, |c| if c.state.step == 2 { Err("no".into()) } else { Ok(()) }).unwrap();
         assert_eq!(found.checkpoint.state.step, 1);
         checkpoints.remove_after(1).unwrap();
         assert_eq!(checkpoints.list().unwrap().len(), 1);
@@ -413,24 +335,14 @@ mod tests {
     #[test]
     fn other_scenes_and_versions_are_refused_not_passed_over() {
         let (_folder, checkpoints) = checkpoints();
-        checkpoints
-            .save(&state(1), &[8; 32], Marks::default())
-            .unwrap();
-        assert!(matches!(
-            load(&checkpoints),
-            Err(RecordError::OtherScene { .. })
-        ));
-        let path = checkpoints
-            .save(&state(2), &SCENE, Marks::default())
-            .unwrap();
+        checkpoints.save(&state(1), &[8; 32], Marks::default()).unwrap();
+        assert!(matches!(load(&checkpoints), Err(RecordError::OtherScene { .. })));
+        let path = checkpoints.save(&state(2), &SCENE, Marks::default()).unwrap();
         let mut bytes = fs::read(&path).unwrap();
         bytes[8] = 9;
         fs::write(&path, bytes).unwrap();
         let error = load(&checkpoints).unwrap_err();
-        assert!(
-            matches!(error, RecordError::OtherVersion { .. }),
-            "{error:?}"
-        );
+        assert!(matches!(error, RecordError::OtherVersion { .. }), "{error:?}");
         assert!(error.to_string().contains("checkpoint format 9"));
     }
 
@@ -444,18 +356,9 @@ mod tests {
     #[test]
     fn a_state_that_contradicts_itself_is_damaged() {
         for bad in [
-            State {
-                velocities: vec![0.0; 5],
-                ..state(1)
-            },
-            State {
-                anchors: vec![f64::NAN],
-                ..state(1)
-            },
-            State {
-                time: f64::INFINITY,
-                ..state(1)
-            },
+            State { velocities: vec![0.0; 5], ..state(1) },
+            State { anchors: vec![f64::NAN], ..state(1) },
+            State { time: f64::INFINITY, ..state(1) },
         ] {
             let mut bytes = Vec::new();
             with_writer(&bad, &SCENE, Marks::default(), |w| w.write_to(&mut bytes)).unwrap();

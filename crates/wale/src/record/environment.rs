@@ -55,10 +55,8 @@ impl Environment {
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), RecordError> {
-        let mut text = serde_json::to_vec_pretty(self).map_err(|error| RecordError::Damaged {
-            path: path.to_path_buf(),
-            reason: error.to_string(),
-        })?;
+        let mut text = serde_json::to_vec_pretty(self)
+            .map_err(|error| RecordError::Damaged { path: path.to_path_buf(), reason: error.to_string() })?;
         text.push(b'\n');
         write_bytes_atomically(path, &text)
     }
@@ -73,10 +71,8 @@ impl Environment {
             format: u32,
             version: Option<String>,
         }
-        let damaged = |error: serde_json::Error| RecordError::Damaged {
-            path: path.to_path_buf(),
-            reason: error.to_string(),
-        };
+        let damaged =
+            |error: serde_json::Error| RecordError::Damaged { path: path.to_path_buf(), reason: error.to_string() };
         let text = read_text(path)?;
         let layout: Layout = serde_json::from_str(&text).map_err(damaged)?;
         if layout.format != FORMAT {
@@ -131,23 +127,13 @@ mod tests {
         here.write(&path).unwrap();
         assert_eq!(Environment::read(&path).unwrap(), here);
 
-        fs::write(
-            &path,
-            r#"{"format": 9, "version": "7.0", "other": "layout"}"#,
-        )
-        .unwrap();
+        fs::write(&path, r#"{"format": 9, "version": "7.0", "other": "layout"}"#).unwrap();
         let error = Environment::read(&path).unwrap_err().to_string();
-        assert!(
-            error.contains("wale 7.0") && error.contains("format 9"),
-            "{error}"
-        );
+        assert!(error.contains("wale 7.0") && error.contains("format 9"), "{error}");
 
         for bad in ["", "{", "[]", r#"{"format": -1}"#, &"[".repeat(100_000)] {
             fs::write(&path, bad).unwrap();
-            assert!(matches!(
-                Environment::read(&path),
-                Err(RecordError::Damaged { .. })
-            ));
+            assert!(matches!(Environment::read(&path), Err(RecordError::Damaged { .. })));
         }
     }
 }

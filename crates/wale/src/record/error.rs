@@ -132,21 +132,14 @@ impl RecordError {
     pub fn from_io(path: &Path, doing: &'static str, source: io::Error) -> Self {
         let path = path.to_path_buf();
         match source.kind() {
-            io::ErrorKind::StorageFull
-            | io::ErrorKind::QuotaExceeded
-            | io::ErrorKind::FileTooLarge => Self::DiskFull { path },
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded | io::ErrorKind::FileTooLarge => {
+                Self::DiskFull { path }
+            }
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                Self::NotWritable {
-                    path,
-                    reason: source.to_string(),
-                }
+                Self::NotWritable { path, reason: source.to_string() }
             }
             io::ErrorKind::NotFound => Self::Missing { path },
-            _ => Self::Io {
-                path,
-                doing,
-                source,
-            },
+            _ => Self::Io { path, doing, source },
         }
     }
 
@@ -167,13 +160,7 @@ impl RecordError {
 /// A reader denied is told apart from a writer denied.
 pub(crate) fn reading(path: &Path, source: io::Error) -> RecordError {
     match source.kind() {
-        io::ErrorKind::NotFound => RecordError::Missing {
-            path: path.to_path_buf(),
-        },
-        _ => RecordError::Io {
-            path: path.to_path_buf(),
-            doing: "read",
-            source,
-        },
+        io::ErrorKind::NotFound => RecordError::Missing { path: path.to_path_buf() },
+        _ => RecordError::Io { path: path.to_path_buf(), doing: "read", source },
     }
 }

@@ -67,10 +67,7 @@ impl Frames {
     }
 
     /// Reads a range of frames, one after the other.
-    pub fn read_range(
-        &self,
-        range: Range<u64>,
-    ) -> impl Iterator<Item = Result<Frame, RecordError>> + '_ {
+    pub fn read_range(&self, range: Range<u64>) -> impl Iterator<Item = Result<Frame, RecordError>> + '_ {
         range.map(|index| self.read(index))
     }
 
@@ -93,8 +90,7 @@ impl Frames {
         for index in self.indices()?.into_iter().rev() {
             if index >= first {
                 let path = self.path(index);
-                fs::remove_file(&path)
-                    .map_err(|error| RecordError::from_io(&path, "remove", error))?;
+                fs::remove_file(&path).map_err(|error| RecordError::from_io(&path, "remove", error))?;
             }
         }
         sync_folder(&self.folder).map_err(|error| RecordError::from_io(&self.folder, "sync", error))
@@ -128,10 +124,7 @@ pub fn read(path: &Path) -> Result<Frame, RecordError> {
             found: format!("frame format {found}"),
             expected: format!("frame format {expected}"),
         },
-        error => RecordError::Damaged {
-            path: path.to_path_buf(),
-            reason: error.to_string(),
-        },
+        error => RecordError::Damaged { path: path.to_path_buf(), reason: error.to_string() },
     })
 }
 
@@ -150,11 +143,7 @@ pub fn parse(bytes: &[u8]) -> Result<Frame, BinaryError> {
     if !positions.iter().chain(&sliding).all(|v| v.is_finite()) || !time.is_finite() {
         return Err(BinaryError::Table("numbers that are not finite"));
     }
-    Ok(Frame {
-        time,
-        positions: positions.chunks_exact(3).map(DVec3::from_slice).collect(),
-        sliding,
-    })
+    Ok(Frame { time, positions: positions.chunks_exact(3).map(DVec3::from_slice).collect(), sliding })
 }
 
 #[cfg(test)]
@@ -195,12 +184,7 @@ mod tests {
     fn foreign_names_are_left_alone() {
         let folder = tempfile::tempdir().unwrap();
         let frames = Frames::new(folder.path().to_path_buf());
-        for name in [
-            "frame_0.wale",
-            "frame_00000.png",
-            "frame_+0001.wale",
-            "notes",
-        ] {
+        for name in ["frame_0.wale", "frame_00000.png", "frame_+0001.wale", "notes"] {
             fs::write(folder.path().join(name), "x").unwrap();
         }
         assert_eq!(frames.count().unwrap(), 0);

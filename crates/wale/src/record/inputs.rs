@@ -48,12 +48,9 @@ pub struct Comparison {
 pub fn compare_hashes(list: &Path) -> Result<Comparison, RecordError> {
     let mut comparison = Comparison::default();
     for line in read_text(list)?.lines() {
-        let (hash, name) = line
-            .split_once("  ")
-            .and_then(|(hash, name)| Some((parse_hash(hash)?, name)))
-            .ok_or_else(|| RecordError::Damaged {
-                path: list.to_path_buf(),
-                reason: format!("`{line}` is not a hash and a name"),
+        let (hash, name) =
+            line.split_once("  ").and_then(|(hash, name)| Some((parse_hash(hash)?, name))).ok_or_else(|| {
+                RecordError::Damaged { path: list.to_path_buf(), reason: format!("`{line}` is not a hash and a name") }
             })?;
         match read_file(&beside(list, Path::new(name))) {
             Ok(bytes) if sha256(&bytes) == hash => {}
@@ -114,10 +111,7 @@ mod tests {
         let list = folder.path().join("inputs.sha256");
         for bad in ["x", "é  name", &format!("{}  name", "g".repeat(64))] {
             std::fs::write(&list, bad).unwrap();
-            assert!(matches!(
-                compare_hashes(&list),
-                Err(RecordError::Damaged { .. })
-            ));
+            assert!(matches!(compare_hashes(&list), Err(RecordError::Damaged { .. })));
         }
     }
 }

@@ -9,8 +9,8 @@ use super::error::RecordError;
 use super::frames::Frames;
 use super::inputs::{compare_hashes, sha256};
 use super::layout::{
-    CHECKPOINTS, ENVIRONMENT, FRAMES, INPUTS, LOG, METRICS, SCENE, SUMMARY, check_space,
-    read_status, remove_if_there, write_status,
+    CHECKPOINTS, ENVIRONMENT, FRAMES, INPUTS, LOG, METRICS, SCENE, SUMMARY, check_space, read_status, remove_if_there,
+    write_status,
 };
 use super::lock::FolderLock;
 use super::log::StepLog;
@@ -44,11 +44,7 @@ impl Interrupted {
     /// [`RecordError::NotARun`], [`RecordError::InUse`], [`RecordError::OtherVersion`],
     /// [`RecordError::InputChanged`], [`RecordError::OtherScene`], [`RecordError::Damaged`] and others of the file
     /// system.
-    pub fn open(
-        folder: &Path,
-        here: &Environment,
-        allow_changed: bool,
-    ) -> Result<Self, RecordError> {
+    pub fn open(folder: &Path, here: &Environment, allow_changed: bool) -> Result<Self, RecordError> {
         let status = read_status(folder)?;
         let lock = FolderLock::take(folder)?;
         let mut notes = Vec::new();
@@ -62,55 +58,35 @@ impl Interrupted {
             if !allow_changed {
                 return Err(other);
             }
-            notes.push(format!(
-                "begun by wale {}: the bits may differ",
-                began.version
-            ));
+            notes.push(format!("begun by wale {}: the bits may differ", began.version));
         } else if (&began.features, &began.architecture) != (&here.features, &here.architecture) {
             notes.push("begun by another build of wale: the last bits may differ".to_owned());
         }
         let comparison = compare_hashes(&folder.join(INPUTS))?;
         for path in comparison.changed {
             if !allow_changed {
-                return Err(RecordError::InputChanged {
-                    path: folder.join(path),
-                });
+                return Err(RecordError::InputChanged { path: folder.join(path) });
             }
             notes.push(format!("{}: changed since the run began", path.display()));
         }
         for path in comparison.gone {
-            notes.push(format!(
-                "{}: gone; the recorded scene is used",
-                path.display()
-            ));
+            notes.push(format!("{}: gone; the recorded scene is used", path.display()));
         }
         let scene = read_text(&folder.join(SCENE))?;
         let hash = sha256(scene.as_bytes());
         let frame_count = Frames::new(folder.join(FRAMES)).count()?;
-        let found = Checkpoints::new(folder.join(CHECKPOINTS)).load(
-            (!allow_changed).then_some(&hash),
-            |checkpoint| {
+        let found =
+            Checkpoints::new(folder.join(CHECKPOINTS)).load((!allow_changed).then_some(&hash), |checkpoint| {
                 let marks = checkpoint.marks;
                 if frame_count < marks.frames {
-                    return Err(format!(
-                        "taken at frame {}, and there are {frame_count}",
-                        marks.frames
-                    ));
+                    return Err(format!("taken at frame {}, and there are {frame_count}", marks.frames));
                 }
                 append_file::check_length(&folder.join(METRICS), marks.metrics)
                     .and_then(|()| append_file::check_length(&folder.join(LOG), marks.log))
                     .map_err(|error| error.to_string())
-            },
-        )?;
+            })?;
         notes.extend(found.passed_over);
-        Ok(Self {
-            checkpoint: found.checkpoint,
-            scene,
-            status,
-            notes,
-            folder: folder.to_path_buf(),
-            lock,
-        })
+        Ok(Self { checkpoint: found.checkpoint, scene, status, notes, folder: folder.to_path_buf(), lock })
     }
 
     /// The resolved scene's file.

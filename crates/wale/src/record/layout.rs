@@ -26,13 +26,10 @@ const LOCK: &str = "lock";
 pub fn read_status(folder: &Path) -> Result<Status, RecordError> {
     let path = folder.join(STATUS);
     let text = read_text(&path).map_err(|error| match error {
-        RecordError::Missing { .. } if folder.exists() => RecordError::NotARun {
-            path: folder.to_path_buf(),
-            reason: format!("it has no file {STATUS}"),
-        },
-        RecordError::Missing { .. } => RecordError::Missing {
-            path: folder.to_path_buf(),
-        },
+        RecordError::Missing { .. } if folder.exists() => {
+            RecordError::NotARun { path: folder.to_path_buf(), reason: format!("it has no file {STATUS}") }
+        }
+        RecordError::Missing { .. } => RecordError::Missing { path: folder.to_path_buf() },
         other => other,
     })?;
     text.parse().map_err(|()| RecordError::Damaged {
@@ -48,10 +45,7 @@ pub(super) fn write_status(folder: &Path, status: Status) -> Result<(), RecordEr
 /// Refuses a folder with content, except a run's under `force`.
 pub(super) fn check_empty(folder: &Path, force: bool) -> Result<(), RecordError> {
     if folder.exists() && !folder.is_dir() {
-        return Err(RecordError::NotEmpty {
-            path: folder.to_path_buf(),
-            mend: "it is a file: choose another name",
-        });
+        return Err(RecordError::NotEmpty { path: folder.to_path_buf(), mend: "it is a file: choose another name" });
     }
     let mut found = Vec::new();
     match fs::read_dir(folder) {
@@ -88,8 +82,7 @@ pub(super) fn clear(folder: &Path) -> Result<(), RecordError> {
     for sub in [FRAMES, CHECKPOINTS] {
         let sub = folder.join(sub);
         if sub.exists() {
-            fs::remove_dir_all(&sub)
-                .map_err(|error| RecordError::from_io(&sub, "remove", error))?;
+            fs::remove_dir_all(&sub).map_err(|error| RecordError::from_io(&sub, "remove", error))?;
         }
     }
     // The scene goes last: while it is there, an interrupted `--force` can be repeated.
@@ -100,28 +93,18 @@ pub(super) fn clear(folder: &Path) -> Result<(), RecordError> {
 
 pub(super) fn remove_if_there(path: &Path) -> Result<(), RecordError> {
     match fs::remove_file(path) {
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-            Err(RecordError::from_io(path, "remove", error))
-        }
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(RecordError::from_io(path, "remove", error)),
         _ => Ok(()),
     }
 }
 
 /// There must be room for two checkpoints and a frame beside what is kept.
-pub(super) fn check_space(
-    folder: &Path,
-    frame_bytes: u64,
-    checkpoint_bytes: u64,
-) -> Result<(), RecordError> {
+pub(super) fn check_space(folder: &Path, frame_bytes: u64, checkpoint_bytes: u64) -> Result<(), RecordError> {
     let needed = frame_bytes.saturating_add(checkpoint_bytes.saturating_mul(2));
     let available = fs4::available_space(folder)
         .map_err(|error| RecordError::from_io(folder, "measure the free space of", error))?;
     if available < needed {
-        return Err(RecordError::TooLittleSpace {
-            path: folder.to_path_buf(),
-            needed,
-            available,
-        });
+        return Err(RecordError::TooLittleSpace { path: folder.to_path_buf(), needed, available });
     }
     Ok(())
 }

@@ -37,21 +37,13 @@ impl FolderLock {
         let _ = (&mut file).take(1024).read_to_string(&mut text);
         let owner = Owner::parse(&text);
         let in_use = |mend: String| {
-            let (pid, host) = owner.clone().map_or(("?".into(), "?".into()), |owner| {
-                (owner.pid.to_string(), owner.host)
-            });
-            RecordError::InUse {
-                path: folder.to_path_buf(),
-                pid,
-                host,
-                mend,
-            }
+            let (pid, host) =
+                owner.clone().map_or(("?".into(), "?".into()), |owner| (owner.pid.to_string(), owner.host));
+            RecordError::InUse { path: folder.to_path_buf(), pid, host, mend }
         };
         match locked {
             Err(TryLockError::WouldBlock) => {
-                return Err(in_use(
-                    "wait for it to end, or choose another folder".to_owned(),
-                ));
+                return Err(in_use("wait for it to end, or choose another folder".to_owned()));
             }
             // A file system without locks: the process id must do.
             Err(TryLockError::Error(_)) if owner.as_ref().is_some_and(Owner::may_live) => {
@@ -107,23 +99,15 @@ struct Owner {
 impl Owner {
     fn parse(text: &str) -> Option<Self> {
         let (pid, host) = text.trim().split_once(' ')?;
-        Some(Self {
-            pid: pid.parse().ok()?,
-            host: host.to_owned(),
-        })
+        Some(Self { pid: pid.parse().ok()?, host: host.to_owned() })
     }
     fn may_live(&self) -> bool {
-        self.host != host()
-            || !cfg!(target_os = "linux")
-            || Path::new(&format!("/proc/{}", self.pid)).exists()
+        self.host != host() || !cfg!(target_os = "linux") || Path::new(&format!("/proc/{}", self.pid)).exists()
     }
 }
 
 fn delete_hint(path: &Path) -> String {
-    format!(
-        "if that process is gone, delete {} and try again",
-        path.display()
-    )
+    format!("if that process is gone, delete {} and try again", path.display())
 }
 
 fn host() -> String {
@@ -146,10 +130,7 @@ mod tests {
         let first = FolderLock::take(folder.path()).unwrap();
         assert!(FolderLock::is_held(folder.path()));
         let error = FolderLock::take(folder.path()).unwrap_err().to_string();
-        assert!(
-            error.contains(&format!("process {} on {}", std::process::id(), host())),
-            "{error}"
-        );
+        assert!(error.contains(&format!("process {} on {}", std::process::id(), host())), "{error}");
         drop(first);
         assert!(!FolderLock::is_held(folder.path()));
         FolderLock::take(folder.path()).unwrap();
@@ -171,10 +152,7 @@ mod tests {
         fs::write(&path, "77 elsewhere\n").unwrap();
         assert!(FolderLock::is_held(folder.path()));
         let error = FolderLock::take(folder.path()).unwrap_err().to_string();
-        assert!(
-            error.contains("77 on elsewhere") && error.contains("delete"),
-            "{error}"
-        );
+        assert!(error.contains("77 on elsewhere") && error.contains("delete"), "{error}");
         fs::remove_file(&path).unwrap();
         FolderLock::take(folder.path()).unwrap();
     }

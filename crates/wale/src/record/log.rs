@@ -21,9 +21,7 @@ impl StepLog {
     /// # Errors
     /// When it cannot be made.
     pub fn create(path: &Path) -> Result<Self, RecordError> {
-        Ok(Self {
-            file: AppendFile::create(path)?,
-        })
+        Ok(Self { file: AppendFile::create(path)? })
     }
 
     /// Goes on with a log that had `length` bytes when the checkpoint was taken.
@@ -31,9 +29,7 @@ impl StepLog {
     /// # Errors
     /// [`RecordError::Damaged`] when the log is shorter.
     pub fn resume(path: &Path, length: u64) -> Result<Self, RecordError> {
-        Ok(Self {
-            file: AppendFile::resume(path, length)?,
-        })
+        Ok(Self { file: AppendFile::resume(path, length)? })
     }
 
     /// Appends an entry.
@@ -41,9 +37,8 @@ impl StepLog {
     /// # Errors
     /// A full disk and other failures to write.
     pub fn append(&mut self, entry: &impl Serialize) -> Result<(), RecordError> {
-        let mut line = serde_json::to_vec(entry).map_err(|error| {
-            RecordError::from_io(self.file.path(), "append", io::Error::other(error))
-        })?;
+        let mut line = serde_json::to_vec(entry)
+            .map_err(|error| RecordError::from_io(self.file.path(), "append", io::Error::other(error)))?;
         line.push(b'\n');
         self.file.append(&line)
     }
@@ -68,8 +63,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.jsonl");
         let mut log = StepLog::create(&path).unwrap();
-        log.append(&json!({"step": 1, "text": "line\nfeed"}))
-            .unwrap();
+        log.append(&json!({"step": 1, "text": "line\nfeed"})).unwrap();
         let mark = log.sync().unwrap();
         log.append(&json!({"step": 2})).unwrap();
         let whole = std::fs::read(&path).unwrap();

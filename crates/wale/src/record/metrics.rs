@@ -21,10 +21,7 @@ impl Column {
     /// A column.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
-        }
+        Self { name: name.into(), unit: unit.into() }
     }
 }
 
@@ -43,10 +40,7 @@ impl Metrics {
     pub fn create(path: &Path, columns: &[Column]) -> Result<Self, RecordError> {
         let mut file = AppendFile::create(path)?;
         file.append(header(columns).as_bytes())?;
-        Ok(Self {
-            file,
-            column_count: columns.len(),
-        })
+        Ok(Self { file, column_count: columns.len() })
     }
 
     /// Goes on with a table that had `length` bytes \[bytes\] when the checkpoint was taken.
@@ -64,10 +58,7 @@ impl Metrics {
                 reason: "its columns are not those of this scene: begin a new run".to_owned(),
             });
         }
-        Ok(Self {
-            file: AppendFile::resume(path, length)?,
-            column_count: columns.len(),
-        })
+        Ok(Self { file: AppendFile::resume(path, length)?, column_count: columns.len() })
     }
 
     /// Appends a row, one value a column.
@@ -128,10 +119,7 @@ mod tests {
     use super::*;
 
     fn columns() -> Vec<Column> {
-        vec![
-            Column::new("time", "s"),
-            Column::new("force of \"left, low\"", "N"),
-        ]
+        vec![Column::new("time", "s"), Column::new("force of \"left, low\"", "N")]
     }
 
     #[test]
@@ -139,25 +127,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("metrics.csv");
         let mut metrics = Metrics::create(&path, &columns()).unwrap();
-        let values = [
-            0.1 + 0.2,
-            -1.0 / 3.0,
-            1e-300,
-            6.02e23,
-            0.0,
-            -0.0,
-            f64::MIN_POSITIVE,
-        ];
+        let values = [0.1 + 0.2, -1.0 / 3.0, 1e-300, 6.02e23, 0.0, -0.0, f64::MIN_POSITIVE];
         for (step, &value) in values.iter().enumerate() {
             metrics.append(step as u64, &[value, 1.0]).unwrap();
         }
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(metrics.sync().unwrap(), text.len() as u64);
         let mut lines = text.lines();
-        assert_eq!(
-            lines.next().unwrap(),
-            r#"step [-],time [s],"force of ""left, low"" [N]""#
-        );
+        assert_eq!(lines.next().unwrap(), r#"step [-],time [s],"force of ""left, low"" [N]""#);
         for (line, value) in lines.zip(values) {
             let cell: f64 = line.split(',').nth(1).unwrap().parse().unwrap();
             assert_eq!(cell.to_bits(), value.to_bits(), "{line}");
@@ -169,9 +146,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("metrics.csv");
         let row = |metrics: &mut Metrics, step: u64| {
-            metrics
-                .append(step, &[step as f64 / 7.0, 1e-9 * step as f64])
-                .unwrap();
+            metrics.append(step, &[step as f64 / 7.0, 1e-9 * step as f64]).unwrap();
         };
         let mut metrics = Metrics::create(&path, &columns()).unwrap();
         (0..3).for_each(|step| row(&mut metrics, step));

@@ -44,8 +44,6 @@ pub(crate) fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
 
 /// Reads a text file of a run, which is never large.
 pub(crate) fn read_text(path: &Path) -> Result<String, RecordError> {
-    String::from_utf8(read_file(path)?).map_err(|_| RecordError::Damaged {
-        path: path.to_path_buf(),
-        reason: "not UTF-8 text".to_owned(),
-    })
+    String::from_utf8(read_file(path)?)
+        .map_err(|_| RecordError::Damaged { path: path.to_path_buf(), reason: "not UTF-8 text".to_owned() })
 }

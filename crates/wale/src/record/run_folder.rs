@@ -24,8 +24,8 @@ use super::error::RecordError;
 use super::frames::Frames;
 use super::inputs::{sha256, write_hashes};
 use super::layout::{
-    CHECKPOINTS, ENVIRONMENT, FRAMES, INPUTS, LOG, METRICS, SCENE, SUMMARY, check_empty,
-    check_space, clear, write_status,
+    CHECKPOINTS, ENVIRONMENT, FRAMES, INPUTS, LOG, METRICS, SCENE, SUMMARY, check_empty, check_space, clear,
+    write_status,
 };
 use super::lock::FolderLock;
 use super::log::StepLog;
@@ -77,24 +77,19 @@ impl RunFolder {
     pub fn create(folder: &Path, start: &RunStart<'_>, force: bool) -> Result<Self, RecordError> {
         // Asked before the first file, so that a foreign folder does not even get a lock file.
         check_empty(folder, force)?;
-        fs::create_dir_all(folder)
-            .map_err(|error| RecordError::from_io(folder, "create", error))?;
+        fs::create_dir_all(folder).map_err(|error| RecordError::from_io(folder, "create", error))?;
         let lock = FolderLock::take(folder)?;
         check_empty(folder, force)?;
         check_space(folder, start.frame_bytes, start.checkpoint_bytes)?;
         clear(folder)?;
         for sub in [FRAMES, CHECKPOINTS] {
             let sub = folder.join(sub);
-            fs::create_dir_all(&sub)
-                .map_err(|error| RecordError::from_io(&sub, "create", error))?;
+            fs::create_dir_all(&sub).map_err(|error| RecordError::from_io(&sub, "create", error))?;
         }
         write_bytes_atomically(&folder.join(SCENE), start.scene.as_bytes())?;
         let mut hashed = vec![PathBuf::from(SCENE)];
         for input in start.inputs {
-            hashed.push(
-                std::path::absolute(input)
-                    .map_err(|error| RecordError::from_io(input, "find", error))?,
-            );
+            hashed.push(std::path::absolute(input).map_err(|error| RecordError::from_io(input, "find", error))?);
         }
         write_hashes(&folder.join(INPUTS), &hashed)?;
         start.environment.write(&folder.join(ENVIRONMENT))?;
@@ -161,11 +156,7 @@ impl RunFolder {
     /// # Errors
     /// A full disk and other failures to write; the checkpoints before are then still there.
     pub fn checkpoint(&mut self, state: &State) -> Result<(), RecordError> {
-        let marks = Marks {
-            frames: self.frame_count,
-            metrics: self.metrics.sync()?,
-            log: self.log.sync()?,
-        };
+        let marks = Marks { frames: self.frame_count, metrics: self.metrics.sync()?, log: self.log.sync()? };
         self.checkpoints.save(state, &self.scene, marks)?;
         Ok(())
     }
@@ -176,11 +167,8 @@ impl RunFolder {
     /// A full disk and other failures to write.
     pub fn write_summary(&self, summary: &impl Serialize) -> Result<(), RecordError> {
         let path = self.folder.join(SUMMARY);
-        let mut text =
-            serde_json::to_vec_pretty(summary).map_err(|error| RecordError::Damaged {
-                path: path.clone(),
-                reason: error.to_string(),
-            })?;
+        let mut text = serde_json::to_vec_pretty(summary)
+            .map_err(|error| RecordError::Damaged { path: path.clone(), reason: error.to_string() })?;
         text.push(b'\n');
         write_bytes_atomically(&path, &text)
     }

@@ -26,10 +26,7 @@ impl RunReader {
     pub fn open(folder: &Path) -> Result<Self, RecordError> {
         read_status(folder)?;
         Environment::read(&folder.join(ENVIRONMENT))?;
-        Ok(Self {
-            folder: folder.to_path_buf(),
-            frames: Frames::new(folder.join(FRAMES)),
-        })
+        Ok(Self { folder: folder.to_path_buf(), frames: Frames::new(folder.join(FRAMES)) })
     }
 
     /// Whether a folder looks like a run folder, whole or not.
@@ -91,14 +88,9 @@ impl RunReader {
     pub fn summary(&self) -> Result<Option<serde_json::Value>, RecordError> {
         let path = self.folder.join(SUMMARY);
         match read_text(&path) {
-            Ok(text) => {
-                serde_json::from_str(&text)
-                    .map(Some)
-                    .map_err(|error| RecordError::Damaged {
-                        path,
-                        reason: error.to_string(),
-                    })
-            }
+            Ok(text) => serde_json::from_str(&text)
+                .map(Some)
+                .map_err(|error| RecordError::Damaged { path, reason: error.to_string() }),
             Err(RecordError::Missing { .. }) => Ok(None),
             Err(error) => Err(error),
         }
@@ -109,8 +101,6 @@ impl RunReader {
     /// # Errors
     /// As [`Checkpoints::load`].
     pub fn checkpoint(&self) -> Result<Checkpoint, RecordError> {
-        Checkpoints::new(self.folder.join(CHECKPOINTS))
-            .load(None, |_| Ok(()))
-            .map(|found| found.checkpoint)
+        Checkpoints::new(self.folder.join(CHECKPOINTS)).load(None, |_| Ok(())).map(|found| found.checkpoint)
     }
 }

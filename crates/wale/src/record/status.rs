@@ -35,11 +35,7 @@ impl FromStr for Status {
             "running" => Ok(Self::Running),
             "done" => Ok(Self::Done),
             "stopped" => Ok(Self::Stopped),
-            other => other
-                .strip_prefix("failed:")
-                .and_then(|code| code.parse().ok())
-                .map(Self::Failed)
-                .ok_or(()),
+            other => other.strip_prefix("failed:").and_then(|code| code.parse().ok()).map(Self::Failed).ok_or(()),
         }
     }
 }
@@ -50,12 +46,7 @@ mod tests {
 
     #[test]
     fn words_and_back() {
-        for status in [
-            Status::Running,
-            Status::Done,
-            Status::Stopped,
-            Status::Failed(70),
-        ] {
+        for status in [Status::Running, Status::Done, Status::Stopped, Status::Failed(70)] {
             assert_eq!(format!("{status}\n").parse(), Ok(status));
         }
         for bad in ["", "failed:", "failed:300", "Done"] {

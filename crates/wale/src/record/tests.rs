@@ -41,11 +41,7 @@ fn first_state() -> State {
 fn frame(state: &State) -> Frame {
     Frame {
         time: state.time,
-        positions: state
-            .coordinates
-            .chunks_exact(5)
-            .map(DVec3::from_slice)
-            .collect(),
+        positions: state.coordinates.chunks_exact(5).map(DVec3::from_slice).collect(),
         sliding: state.coordinates.chunks_exact(5).map(|b| b[3]).collect(),
     }
 }
@@ -134,9 +130,7 @@ fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 fn whole_run() -> Vec<(PathBuf, Vec<u8>)> {
     static WHOLE: LazyLock<Vec<(PathBuf, Vec<u8>)>> = LazyLock::new(|| {
         let folder = tempfile::tempdir().unwrap();
-        run_to(folder.path(), STEPS)
-            .set_status(Status::Done)
-            .unwrap();
+        run_to(folder.path(), STEPS).set_status(Status::Done).unwrap();
         files(folder.path())
     });
     WHOLE.clone()
@@ -189,8 +183,7 @@ fn a_frame_without_its_row_and_a_row_without_its_checkpoint_are_redone() {
         let folder = tempfile::tempdir().unwrap();
         let mut run = run_to(folder.path(), 5);
         let mut state = run_state_after(6);
-        run.log(&json!({"step": 6, "step_size": state.next_step_size}))
-            .unwrap();
+        run.log(&json!({"step": 6, "step_size": state.next_step_size})).unwrap();
         run.write_frame(&frame(&state)).unwrap();
         if rows {
             run.write_metrics(6, &[1.0, 2.0]).unwrap();
@@ -269,14 +262,8 @@ fn rows_lost_behind_the_last_checkpoint_are_had_from_the_one_before() {
 fn two_runs_in_one_folder_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let run = run_to(folder.path(), 3);
-    assert!(matches!(
-        create(folder.path(), true),
-        Err(RecordError::InUse { .. })
-    ));
-    assert!(matches!(
-        Interrupted::open(folder.path(), &here(), false),
-        Err(RecordError::InUse { .. })
-    ));
+    assert!(matches!(create(folder.path(), true), Err(RecordError::InUse { .. })));
+    assert!(matches!(Interrupted::open(folder.path(), &here(), false), Err(RecordError::InUse { .. })));
     drop(run);
     resume_to_the_end(folder.path()).unwrap();
 }
@@ -303,25 +290,16 @@ fn folders_with_content_are_kept() {
     assert_eq!(files(foreign.path()).len(), 1, "not even a lock was left");
 
     let file = foreign.path().join("frames/holiday.jpg");
-    assert!(matches!(
-        create(&file, true),
-        Err(RecordError::NotEmpty { .. })
-    ));
+    assert!(matches!(create(&file, true), Err(RecordError::NotEmpty { .. })));
 }
 
 #[test]
 fn a_folder_that_is_no_run_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let open = |path: &Path| Interrupted::open(path, &here(), false).unwrap_err();
-    assert!(matches!(
-        open(&folder.path().join("nowhere")),
-        RecordError::Missing { .. }
-    ));
+    assert!(matches!(open(&folder.path().join("nowhere")), RecordError::Missing { .. }));
     assert!(matches!(open(folder.path()), RecordError::NotARun { .. }));
-    assert!(matches!(
-        RunReader::open(folder.path()).unwrap_err(),
-        RecordError::NotARun { .. }
-    ));
+    assert!(matches!(RunReader::open(folder.path()).unwrap_err(), RecordError::NotARun { .. }));
     fs::write(folder.path().join("STATUS"), "\u{1b}[2J").unwrap();
     let error = open(folder.path());
     assert!(matches!(error, RecordError::Damaged { .. }));
@@ -382,18 +360,9 @@ fn a_checkpoint_of_another_scene_is_refused() {
     drop(run_to(one.path(), 3));
     let mut foreign = first_state();
     foreign.step = 99;
-    Checkpoints::new(other.path().to_path_buf())
-        .save(&foreign, &[1; 32], Marks::default())
-        .unwrap();
-    fs::copy(
-        other.path().join("step_00000099.ckpt"),
-        one.path().join("checkpoints/step_00000099.ckpt"),
-    )
-    .unwrap();
-    assert!(matches!(
-        Interrupted::open(one.path(), &here(), false),
-        Err(RecordError::OtherScene { .. })
-    ));
+    Checkpoints::new(other.path().to_path_buf()).save(&foreign, &[1; 32], Marks::default()).unwrap();
+    fs::copy(other.path().join("step_00000099.ckpt"), one.path().join("checkpoints/step_00000099.ckpt")).unwrap();
+    assert!(matches!(Interrupted::open(one.path(), &here(), false), Err(RecordError::OtherScene { .. })));
 }
 
 #[test]
@@ -423,9 +392,6 @@ fn too_little_space_is_told_before_anything_is_written() {
         false,
     )
     .unwrap_err();
-    assert!(
-        matches!(error, RecordError::TooLittleSpace { .. }),
-        "{error}"
-    );
+    assert!(matches!(error, RecordError::TooLittleSpace { .. }), "{error}");
     assert!(!RunReader::is_run(folder.path()));
 }
