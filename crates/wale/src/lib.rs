@@ -9,3 +9,4 @@ pub mod geometry;
 pub mod model;
 pub mod pattern;
 pub mod simulation;
+pub mod record;
