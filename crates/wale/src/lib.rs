@@ -3,3 +3,5 @@
 pub mod dynamics;
 pub mod geometry;
 pub mod model;
+pub mod picture;
+pub mod view;
