@@ -1,1 +1,5 @@
-//! Numerics.
+//! Small derivative mathematics, block-sparse matrices and solvers. Knows no cloth.
+
+pub mod check;
+pub mod dense;
+pub mod jet;

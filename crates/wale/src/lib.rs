@@ -1,7 +1,10 @@
 //! Yarn-level cloth: from a stitch chart to moving fabric.
 
 pub mod dynamics;
+pub mod energy;
+pub mod fabric;
 pub mod geometry;
 pub mod model;
+pub mod pattern;
 pub mod picture;
 pub mod view;

@@ -10,4 +10,4 @@ pub use card::{FabricCard, YarnCard};
 pub use frame::Frame;
 pub use ids::{NodeId, PassId, StitchId, YarnId};
 pub use motion::{Motion, Pose};
-pub use network::{ContactPair, LoopInfo, Network, PassKind, SegmentKind, StitchContact, WrapPair};
+pub use network::{ContactPair, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair};
