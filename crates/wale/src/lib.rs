@@ -10,3 +10,5 @@ pub mod model;
 pub mod pattern;
 pub mod simulation;
 pub mod record;
+pub mod picture;
+pub mod view;
