@@ -7,3 +7,4 @@ pub mod fabric;
 pub mod geometry;
 pub mod model;
 pub mod pattern;
+pub mod scene;
