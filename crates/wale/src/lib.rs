@@ -3,8 +3,13 @@
 pub mod contact;
 pub mod dynamics;
 pub mod energy;
+pub mod export;
 pub mod fabric;
 pub mod geometry;
 pub mod model;
 pub mod pattern;
+pub mod picture;
+pub mod record;
 pub mod scene;
+pub mod simulation;
+pub mod view;

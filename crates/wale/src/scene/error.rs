@@ -7,7 +7,10 @@ use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
 
 /// Why a scene cannot be had.
 #[derive(Clone, Debug)]
-pub struct SceneError {
+pub struct SceneError(Box<Contents>);
+
+#[derive(Clone, Debug)]
+struct Contents {
     class: ErrorClass,
     what: String,
     why: Option<String>,
@@ -54,51 +57,51 @@ impl SceneError {
         });
         let Complaint { class, what, why, mend, .. } = complaint;
         let text = NamedSource::new(file, text.to_owned());
-        Self { class, what, why, mend, file: file.to_owned(), place, text }
+        Self(Box::new(Contents { class, what, why, mend, file: file.to_owned(), place, text }))
     }
 
     /// What kind of error this is.
     #[must_use]
     pub fn class(&self) -> ErrorClass {
-        self.class
+        self.0.class
     }
     /// What is wrong, in one sentence.
     #[must_use]
     pub fn what(&self) -> &str {
-        &self.what
+        &self.0.what
     }
     /// Why it is wrong.
     #[must_use]
     pub fn why(&self) -> Option<&str> {
-        self.why.as_deref()
+        self.0.why.as_deref()
     }
     /// How to mend it.
     #[must_use]
     pub fn mend(&self) -> Option<&str> {
-        self.mend.as_deref()
+        self.0.mend.as_deref()
     }
     /// The file as it was named.
     #[must_use]
     pub fn file(&self) -> &str {
-        &self.file
+        &self.0.file
     }
     /// Line and column, from 1, of the underlined text.
     #[must_use]
     pub fn line_and_column(&self) -> Option<(usize, usize)> {
-        self.place.as_ref().map(|(_, line, column)| (*line, *column))
+        self.0.place.as_ref().map(|(_, line, column)| (*line, *column))
     }
     /// The underlined text.
     #[must_use]
     pub fn underlined(&self) -> Option<&str> {
-        self.place.as_ref().map(|(span, ..)| &self.text.inner()[span.clone()])
+        self.0.place.as_ref().map(|(span, ..)| &self.0.text.inner()[span.clone()])
     }
 }
 
 impl fmt::Display for SceneError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.line_and_column() {
-            Some((line, column)) => write!(f, "{}:{line}:{column}: {}", self.file, self.what),
-            None => write!(f, "{}: {}", self.file, self.what),
+            Some((line, column)) => write!(f, "{}:{line}:{column}: {}", self.0.file, self.0.what),
+            None => write!(f, "{}: {}", self.0.file, self.0.what),
         }
     }
 }
@@ -107,21 +110,21 @@ impl std::error::Error for SceneError {}
 
 impl Diagnostic for SceneError {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        Some(Box::new(match self.class {
+        Some(Box::new(match self.0.class {
             ErrorClass::BadInput => "wale::scene::bad_input",
             ErrorClass::ResourceLimit => "wale::scene::resource_limit",
             ErrorClass::InputOutput => "wale::scene::input_output",
         }))
     }
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.mend.as_ref().map(|mend| Box::new(mend) as Box<dyn fmt::Display>)
+        self.0.mend.as_ref().map(|mend| Box::new(mend) as Box<dyn fmt::Display>)
     }
     fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.place.as_ref().map(|_| &self.text as &dyn SourceCode)
+        self.0.place.as_ref().map(|_| &self.0.text as &dyn SourceCode)
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let (span, ..) = self.place.as_ref()?;
-        let label = self.why.clone().unwrap_or_else(|| "here".to_owned());
+        let (span, ..) = self.0.place.as_ref()?;
+        let label = self.0.why.clone().unwrap_or_else(|| "here".to_owned());
         let label = LabeledSpan::new(Some(label), span.start, span.len());
         Some(Box::new(std::iter::once(label)))
     }
