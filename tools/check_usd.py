@@ -48,7 +48,7 @@ def check_curves(stage, curves):
     times = curves.GetPointsAttr().GetTimeSamples() or [Usd.TimeCode.Default()]
     if len(times) > 1 and (times[0] != stage.GetStartTimeCode() or times[-1] != stage.GetEndTimeCode()):
         yield f"samples from {times[0]} to {times[-1]} do not fill the stage's time"
-    primvars = UsdGeom.PrimvarsAPI(curves.GetPrim()).GetPrimvars()
+    primvars = UsdGeom.PrimvarsAPI(curves.GetPrim()).GetPrimvarsWithAuthoredValues()
     for time in times:
         points = curves.GetPointsAttr().Get(time)
         if len(points) != sum(counts):
