@@ -273,7 +273,7 @@ fn numbers_that_are_none_are_refused_by_every_format() {
         |s: &mut Snapshot| s.fields[0].values[1] = f64::NAN,
         |s: &mut Snapshot| s.fields[0].values.truncate(1),
         |s: &mut Snapshot| s.time = f64::NAN,
-        |s: &mut Snapshot| drop(s.curves[0].pass.pop()),
+        |s: &mut Snapshot| s.curves[0].pass.truncate(1),
     ] {
         for format in Format::ALL {
             let mut snapshots = run(2);
@@ -307,6 +307,11 @@ fn a_stream_that_fails_is_an_error() {
         write_ply(&mut Full, &snapshots[0], &settings),
     ];
     assert!(results.iter().all(|result| matches!(result, Err(ExportError::Stream(_)))));
+    type Writer = fn(&mut Full, &Snapshot, &Settings) -> Result<(), ExportError>;
+    for write in [write_vtp as Writer, write_bcc, write_obj, write_ply] {
+        let result = write(&mut Full, &snapshots[0], &settings);
+        assert!(matches!(result, Err(ExportError::Stream(_))));
+    }
 }
 
 #[test]
