@@ -3,8 +3,12 @@
 pub mod contact;
 pub mod dynamics;
 pub mod energy;
+pub mod export;
 pub mod fabric;
 pub mod geometry;
 pub mod model;
 pub mod pattern;
+pub mod simulation;
 pub mod record;
+pub mod picture;
+pub mod view;

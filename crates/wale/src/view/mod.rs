@@ -1,0 +1,1 @@
+//! A page to turn the fabric in the hand.
