@@ -19,13 +19,7 @@ pub fn stockinette(rows: usize, columns: usize, samples: usize, yarns: [[u8; 3];
             for p in points.windows(2) {
                 u.push(u.last().unwrap() + p[0].distance(p[1]));
             }
-            Curve {
-                pass: vec![0; points.len()],
-                arc_length: u,
-                radius: r,
-                color: yarns[row / 6 % 2],
-                points,
-            }
+            Curve { pass: vec![0; points.len()], arc_length: u, radius: r, color: yarns[row / 6 % 2], points }
         })
         .collect()
 }
@@ -33,10 +27,7 @@ pub fn stockinette(rows: usize, columns: usize, samples: usize, yarns: [[u8; 3];
 #[test]
 fn look() {
     let curves = stockinette(14, 10, 48, [[176, 42, 48], [228, 221, 205]]);
-    let subject = Subject {
-        curves: &curves,
-        ..Default::default()
-    };
+    let subject = Subject { curves: &curves, ..Default::default() };
     let (points, radius) = subject.extent_points();
     for (name, view) in [("front", View::Front), ("nice", View::ThreeQuarter)] {
         let settings = Settings {
@@ -49,10 +40,6 @@ fn look() {
         let t = std::time::Instant::now();
         let image = render(&subject, &camera, &settings);
         println!("{name} {:?}", t.elapsed());
-        write_png(
-            &image,
-            std::fs::File::create(format!("/tmp/pics/{name}.png")).unwrap(),
-        )
-        .unwrap();
+        write_png(&image, std::fs::File::create(format!("/tmp/pics/{name}.png")).unwrap()).unwrap();
     }
 }

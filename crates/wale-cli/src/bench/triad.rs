@@ -21,13 +21,11 @@ pub fn triad() -> f64 {
     for repeat in 0..=REPEATS {
         let scale = std::hint::black_box(repeat as f64);
         let began = Instant::now();
-        a.par_chunks_mut(PIECE)
-            .zip(b.par_chunks(PIECE).zip(c.par_chunks(PIECE)))
-            .for_each(|(a, (b, c))| {
-                for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-                    *a = b + scale * c;
-                }
-            });
+        a.par_chunks_mut(PIECE).zip(b.par_chunks(PIECE).zip(c.par_chunks(PIECE))).for_each(|(a, (b, c))| {
+            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                *a = b + scale * c;
+            }
+        });
         std::hint::black_box(&mut a);
         // The first touches the pages.
         if repeat > 0 {

@@ -38,15 +38,11 @@ pub fn render(subject: &Subject, camera: &Camera, settings: &Settings) -> Image 
     let stage = Stage::new(subject, camera, settings, &colors);
     let (width, height) = (settings.width.max(1), settings.height.max(1));
     let mut image = Image::filled(width, height, settings.background);
-    image
-        .pixels
-        .par_chunks_mut(width)
-        .enumerate()
-        .for_each(|(y, row)| {
-            for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = to_srgb(stage.pixel(x, y, width, height));
-            }
-        });
+    image.pixels.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, pixel) in row.iter_mut().enumerate() {
+            *pixel = to_srgb(stage.pixel(x, y, width, height));
+        }
+    });
     if settings.scale_bar {
         draw_scale_bar(&mut image, camera.height / height as f64);
     }
@@ -62,19 +58,11 @@ pub fn render(subject: &Subject, camera: &Camera, settings: &Settings) -> Image 
 /// Values at both ends of the colours for a quantity: all but the most extreme hundredth, about zero if signed.
 #[must_use]
 pub fn color_range(quantity: Quantity, values: &[Vec<f64>]) -> [f64; 2] {
-    let mut sorted: Vec<f64> = values
-        .iter()
-        .flatten()
-        .copied()
-        .filter(|v| v.is_finite())
-        .collect();
+    let mut sorted: Vec<f64> = values.iter().flatten().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let at = |part: f64| {
         let last = sorted.len().saturating_sub(1) as f64;
-        sorted
-            .get((part * last).round() as usize)
-            .copied()
-            .unwrap_or(0.0)
+        sorted.get((part * last).round() as usize).copied().unwrap_or(0.0)
     };
     let (low, high) = (at(0.01), at(0.99));
     let smallest = 1e-3 / quantity.legend_unit().1;
@@ -89,11 +77,7 @@ pub fn color_range(quantity: Quantity, values: &[Vec<f64>]) -> [f64; 2] {
 /// The colour map that suits a quantity.
 #[must_use]
 pub fn color_map(quantity: Quantity) -> ColorMap {
-    if quantity.is_signed() {
-        ColorMap::Diverging
-    } else {
-        ColorMap::Sequential
-    }
+    if quantity.is_signed() { ColorMap::Diverging } else { ColorMap::Sequential }
 }
 
 fn point_colors(subject: &Subject, settings: &Settings) -> (Vec<Vec<Vec3>>, Option<Legend>) {
@@ -105,9 +89,7 @@ fn point_colors(subject: &Subject, settings: &Settings) -> (Vec<Vec<Vec3>>, Opti
         let plain = |c: &crate::geometry::Curve| vec![to_linear(c.color); c.points.len()];
         return (subject.curves.iter().map(plain).collect(), None);
     };
-    let range = settings
-        .color_range
-        .unwrap_or_else(|| color_range(quantity, values));
+    let range = settings.color_range.unwrap_or_else(|| color_range(quantity, values));
     let map = color_map(quantity);
     let colors = subject
         .curves
@@ -116,22 +98,14 @@ fn point_colors(subject: &Subject, settings: &Settings) -> (Vec<Vec<Vec3>>, Opti
         .map(|(c, curve)| {
             (0..curve.points.len())
                 .map(|i| {
-                    let value = values
-                        .get(c)
-                        .and_then(|v| v.get(i))
-                        .copied()
-                        .unwrap_or(f64::NAN);
+                    let value = values.get(c).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
                     map.light((value - range[0]) / (range[1] - range[0]))
                 })
                 .collect()
         })
         .collect();
     let (unit, scale) = quantity.legend_unit();
-    let legend = Legend {
-        title: format!("{} [{unit}]", quantity.name()),
-        range: range.map(|v| v * scale),
-        map,
-    };
+    let legend = Legend { title: format!("{} [{unit}]", quantity.name()), range: range.map(|v| v * scale), map };
     (colors, Some(legend))
 }
 
@@ -158,45 +132,27 @@ enum Seen {
 }
 
 impl<'a> Stage<'a> {
-    fn new(
-        subject: &Subject,
-        camera: &'a Camera,
-        settings: &'a Settings,
-        colors: &[Vec<Vec3>],
-    ) -> Self {
+    fn new(subject: &Subject, camera: &'a Camera, settings: &'a Settings, colors: &[Vec<Vec3>]) -> Self {
         let (points, radius) = subject.extent_points();
-        let ground = settings
-            .ground
-            .and_then(DVec3::try_normalize)
-            .and_then(|normal| {
-                let low = points
-                    .iter()
-                    .filter(|p| p.is_finite())
-                    .map(|p| (*p - camera.target).dot(normal))
-                    .fold(f64::INFINITY, f64::min);
-                low.is_finite()
-                    .then_some((normal.as_vec3(), (low - 1.02 * radius) as f32))
-            });
+        let ground = settings.ground.and_then(DVec3::try_normalize).and_then(|normal| {
+            let low = points
+                .iter()
+                .filter(|p| p.is_finite())
+                .map(|p| (*p - camera.target).dot(normal))
+                .fold(f64::INFINITY, f64::min);
+            low.is_finite().then_some((normal.as_vec3(), (low - 1.02 * radius) as f32))
+        });
         let key = -0.62 * camera.right + 0.62 * camera.up + 0.60 * camera.back;
         Self {
             camera,
             settings,
             tubes: Tubes::new(subject.curves, colors, camera.target),
-            solids: subject
-                .solids
-                .iter()
-                .map(|s| PlacedSolid::new(s, camera.target))
-                .collect(),
+            solids: subject.solids.iter().map(|s| PlacedSolid::new(s, camera.target)).collect(),
             ground,
             background: to_linear(settings.background),
             to_key: key.normalize().as_vec3(),
             up: camera.up.as_vec3(),
-            reach: AMBIENT_REACH
-                * (if radius > 0.0 {
-                    radius
-                } else {
-                    0.01 * camera.height
-                }) as f32,
+            reach: AMBIENT_REACH * (if radius > 0.0 { radius } else { 0.01 * camera.height }) as f32,
         }
     }
 
@@ -213,10 +169,7 @@ impl<'a> Stage<'a> {
             let px = (x as f64 + 0.5 + f64::from(dx) - 0.5 * width as f64) / half;
             let py = (half - y as f64 - 0.5 - f64::from(dy)) / half;
             let (origin, direction) = self.camera.ray(px, py);
-            let ray = Ray {
-                origin: (origin - self.camera.target).as_vec3(),
-                direction: direction.as_vec3(),
-            };
+            let ray = Ray { origin: (origin - self.camera.target).as_vec3(), direction: direction.as_vec3() };
             // Cut each sample before the mean: one glint must not outshine the rest of an edge pixel.
             sum += shoulder(self.light_along(ray, dice));
         }
@@ -247,11 +200,7 @@ impl<'a> Stage<'a> {
 
     /// Whether something stands in a ray's way before `limit`.
     fn blocked(&self, ray: Ray, limit: f32) -> bool {
-        self.tubes.any(ray, limit)
-            || self
-                .solids
-                .iter()
-                .any(|s| s.entry(ray).is_some_and(|h| h.distance < limit))
+        self.tubes.any(ray, limit) || self.solids.iter().any(|s| s.entry(ray).is_some_and(|h| h.distance < limit))
     }
 
     fn light_along(&self, ray: Ray, dice: Dice) -> Vec3 {
@@ -264,11 +213,7 @@ impl<'a> Stage<'a> {
                 let light = self.lit(hit.color, hit.normal, -ray.direction, key, open);
                 // An endless plane runs out into the background instead of ending at a horizon.
                 let far = at.length() / self.camera.height as f32;
-                let fade = if hit.endless {
-                    ((far - 1.2) / 2.5).clamp(0.0, 1.0)
-                } else {
-                    0.0
-                };
+                let fade = if hit.endless { ((far - 1.2) / 2.5).clamp(0.0, 1.0) } else { 0.0 };
                 light.lerp(self.background, fade * fade * (3.0 - 2.0 * fade))
             }
             Seen::Ground(distance) => {
@@ -292,35 +237,21 @@ impl<'a> Stage<'a> {
         let spread = KEY_SPREAD * b.sqrt();
         let direction = (self.to_key + spread * (cos * side + sin * other)).normalize();
         let faces = normal.dot(self.to_key) > -0.3;
-        let ray = Ray {
-            origin: start,
-            direction,
-        };
-        let key = if faces && !self.blocked(ray, f32::INFINITY) {
-            1.0
-        } else {
-            0.0
-        };
+        let ray = Ray { origin: start, direction };
+        let key = if faces && !self.blocked(ray, f32::INFINITY) { 1.0 } else { 0.0 };
         let count = self.settings.ambient_rays;
         if count == 0 {
             return (key, 1.0);
         }
         let (side, other) = (normal.any_orthonormal_vector(), Vec3::ZERO);
-        let other = if other == Vec3::ZERO {
-            normal.cross(side)
-        } else {
-            other
-        };
+        let other = if other == Vec3::ZERO { normal.cross(side) } else { other };
         let mut open = 0.0;
         for i in 0..count {
             let [a, b] = dice.pair(1 + i);
             let (sin, cos) = (std::f32::consts::TAU * a).sin_cos();
             let (flat, high) = (b.sqrt(), (1.0 - b).sqrt());
             let direction = flat * (cos * side + sin * other) + high * normal;
-            let ray = Ray {
-                origin: start,
-                direction,
-            };
+            let ray = Ray { origin: start, direction };
             if !self.blocked(ray, self.reach) {
                 open += 1.0;
             }
@@ -352,21 +283,14 @@ impl<'a> Stage<'a> {
         let tangent = a.tangent.lerp(b.tangent, s).normalize_or(a.tangent);
         // A cubic through both ends with their tangents: the yarn's bend shows in the light, not its corners.
         let t = (1.0 - s) * s;
-        let bow = t
-            * ((1.0 - s) * (axis.length() * a.tangent - axis)
-                - s * (axis.length() * b.tangent - axis));
+        let bow = t * ((1.0 - s) * (axis.length() * a.tangent - axis) - s * (axis.length() * b.tangent - axis));
         let spoke = at - (a.position + s * axis + bow);
         let smooth = (spoke - spoke.dot(tangent) * tangent).normalize_or(-ray.direction);
         let zero = a.normal.lerp(b.normal, s);
-        let zero =
-            (zero - zero.dot(tangent) * tangent).normalize_or(tangent.any_orthonormal_vector());
+        let zero = (zero - zero.dot(tangent) * tangent).normalize_or(tangent.any_orthonormal_vector());
         let angle = smooth.dot(tangent.cross(zero)).atan2(smooth.dot(zero));
         let arc_length = a.arc_length + f64::from(s) * (b.arc_length - a.arc_length);
-        let spin = Spin {
-            plies: self.settings.plies,
-            twist: self.settings.twist,
-            radius: f64::from(radius),
-        };
+        let spin = Spin { plies: self.settings.plies, twist: self.settings.twist, radius: f64::from(radius) };
         // Pixels across a yarn's radius decide what can be seen of its plies.
         let pixels = radius * self.settings.height as f32 / self.camera.height as f32;
         let detail = ((pixels - 0.8) / 3.0).clamp(0.0, 1.0);
@@ -377,13 +301,7 @@ impl<'a> Stage<'a> {
         let (key, open) = self.arriving(at, smooth, dice);
         let groove = 1.0 - 0.55 * (1.0 - spun.crest) * (1.0 - spun.crest);
         let color = a.color.lerp(b.color, s) * (1.0 + 0.16 * spun.streak);
-        self.lit(
-            color.min(Vec3::splat(0.95)),
-            normal,
-            -ray.direction,
-            key * groove.sqrt(),
-            open * groove,
-        ) * groove
+        self.lit(color.min(Vec3::splat(0.95)), normal, -ray.direction, key * groove.sqrt(), open * groove) * groove
     }
 }
 
@@ -397,18 +315,11 @@ struct Dice {
 
 impl Dice {
     fn new(x: usize, y: usize, sample: u32) -> Self {
-        Self {
-            x: x as u32,
-            y: y as u32,
-            sample,
-        }
+        Self { x: x as u32, y: y as u32, sample }
     }
     /// The pair of the given purpose: well spread over the samples of a pixel, unlike between pixels.
     fn pair(self, purpose: u32) -> [f32; 2] {
-        let start = [
-            unit_hash(self.x, self.y, 2 * purpose),
-            unit_hash(self.x, self.y, 2 * purpose + 1),
-        ];
+        let start = [unit_hash(self.x, self.y, 2 * purpose), unit_hash(self.x, self.y, 2 * purpose + 1)];
         plastic(self.sample, start)
     }
 }
@@ -416,30 +327,19 @@ impl Dice {
 /// Point `n` of the sequence with the steps of the plastic number \[Roberts 2018\]: even for any count.
 fn plastic(n: u32, start: [f32; 2]) -> [f32; 2] {
     let n = n as f32;
-    [
-        (start[0] + 0.754_877_7 * n).fract(),
-        (start[1] + 0.569_840_3 * n).fract(),
-    ]
+    [(start[0] + 0.754_877_7 * n).fract(), (start[1] + 0.569_840_3 * n).fract()]
 }
 
 /// From 0..1 to a tent over −0.8..0.8.
 fn tent(u: f32) -> f32 {
-    let v = if u < 0.5 {
-        (2.0 * u).sqrt() - 1.0
-    } else {
-        1.0 - (2.0 - 2.0 * u).sqrt()
-    };
+    let v = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
     0.8 * v
 }
 
 /// Leaves light below 0.8 as it is and bends what is above towards 1.
 fn shoulder(light: Vec3) -> Vec3 {
     let one = |x: f32| {
-        if x <= 0.8 {
-            x
-        } else {
-            0.8 + 0.2 * (1.0 - (-(x - 0.8) / 0.2).exp())
-        }
+        if x <= 0.8 { x } else { 0.8 + 0.2 * (1.0 - (-(x - 0.8) / 0.2).exp()) }
     };
     Vec3::new(one(light.x), one(light.y), one(light.z))
 }

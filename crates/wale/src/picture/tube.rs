@@ -57,10 +57,7 @@ impl Tubes {
         let boxes: Vec<Bounds> = (0..tubes.segments.len())
             .map(|s| {
                 let (a, b, radius) = tubes.capsule(s as u32);
-                Bounds {
-                    min: a.min(b) - radius,
-                    max: a.max(b) + radius,
-                }
+                Bounds { min: a.min(b) - radius, max: a.max(b) + radius }
             })
             .collect();
         tubes.bvh = Bvh::new(&boxes);
@@ -76,18 +73,14 @@ impl Tubes {
         let tangents: Vec<Vec3> = (0..piece.len())
             .map(|k| {
                 let chord = at((k + 1).min(last)) - at(k.saturating_sub(1));
-                let chord = if chord == DVec3::ZERO {
-                    at((k + 1).min(last)) - at(k.min(last - 1))
-                } else {
-                    chord
-                };
+                let chord = if chord == DVec3::ZERO { at((k + 1).min(last)) - at(k.min(last - 1)) } else { chord };
                 chord.normalize_or(DVec3::X).as_vec3()
             })
             .collect();
         let mut normal = tangents[0].any_orthonormal_vector();
         for (k, &i) in piece.iter().enumerate() {
-            normal = (normal - normal.dot(tangents[k]) * tangents[k])
-                .normalize_or(tangents[k].any_orthonormal_vector());
+            normal =
+                (normal - normal.dot(tangents[k]) * tangents[k]).normalize_or(tangents[k].any_orthonormal_vector());
             if k < last {
                 self.segments.push(self.points.len() as u32);
                 self.radius.push(curve.radius as f32);
@@ -107,43 +100,26 @@ impl Tubes {
                 let t = tangents[k] - 2.0 / c1 * v1.dot(tangents[k]) * v1;
                 let v2 = tangents[k + 1] - t;
                 let c2 = v2.length_squared();
-                normal = if c2 > 0.0 {
-                    n - 2.0 / c2 * v2.dot(n) * v2
-                } else {
-                    n
-                };
+                normal = if c2 > 0.0 { n - 2.0 / c2 * v2.dot(n) * v2 } else { n };
             }
         }
     }
 
     fn capsule(&self, segment: u32) -> (Vec3, Vec3, f32) {
         let first = self.segments[segment as usize] as usize;
-        (
-            self.points[first].position,
-            self.points[first + 1].position,
-            self.radius[segment as usize],
-        )
+        (self.points[first].position, self.points[first + 1].position, self.radius[segment as usize])
     }
 
     /// The nearest yarn nearer than `limit`.
     pub fn closest(&self, ray: Ray, limit: f32) -> Option<TubeHit> {
         self.bvh
             .closest(ray, limit, |s, limit| self.test(ray, s, limit))
-            .map(
-                |Hit {
-                     distance,
-                     primitive,
-                 }| TubeHit {
-                    distance,
-                    segment: primitive,
-                },
-            )
+            .map(|Hit { distance, primitive }| TubeHit { distance, segment: primitive })
     }
 
     /// Whether a yarn is met nearer than `limit`.
     pub fn any(&self, ray: Ray, limit: f32) -> bool {
-        self.bvh
-            .any(ray, limit, |s, limit| self.test(ray, s, limit))
+        self.bvh.any(ray, limit, |s, limit| self.test(ray, s, limit))
     }
 
     fn test(&self, ray: Ray, segment: u32, limit: f32) -> Option<f32> {
@@ -167,9 +143,7 @@ pub(super) fn capsule_entry(ray: Ray, a: Vec3, b: Vec3, radius: f32) -> Option<f
     let mut cap = if axis_ray < 0.0 { b } else { a };
     if qa > 1e-6 * axis_axis {
         let qb = axis_axis * from_ray - axis_from * axis_ray;
-        let qc = axis_axis * from_a.length_squared()
-            - axis_from * axis_from
-            - radius * radius * axis_axis;
+        let qc = axis_axis * from_a.length_squared() - axis_from * axis_from - radius * radius * axis_axis;
         let h = qb * qb - qa * qc;
         if h < 0.0 {
             return None;
@@ -225,10 +199,7 @@ mod tests {
             let b = a + 0.6 * Vec3::new(f(4), f(5), f(6));
             let origin = 3.0 * Vec3::new(f(7), f(8), 1.0);
             let aim = a.lerp(b, f(9) + 0.5) + 0.5 * Vec3::new(f(10), f(11), f(12));
-            let ray = Ray {
-                origin,
-                direction: (aim - origin).normalize(),
-            };
+            let ray = Ray { origin, direction: (aim - origin).normalize() };
             let (found, wanted) = (capsule_entry(ray, a, b, 0.1), traced(ray, a, b, 0.1));
             match (found, wanted) {
                 (Some(x), Some(y)) => {
@@ -265,12 +236,7 @@ mod tests {
         let (first, last) = (tubes.points[0], tubes.points[n as usize]);
         // Tangents at the two ends are one-sided, hence the loose bound.
         assert!(first.normal.dot(last.normal) > 0.999, "{first:?} {last:?}");
-        assert!(
-            tubes
-                .points
-                .iter()
-                .all(|p| p.normal.dot(p.tangent).abs() < 1e-5)
-        );
+        assert!(tubes.points.iter().all(|p| p.normal.dot(p.tangent).abs() < 1e-5));
     }
 
     #[test]
