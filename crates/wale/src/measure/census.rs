@@ -121,7 +121,7 @@ mod tests {
             assert_eq!(census.nodes_by_stack_size.iter().sum::<usize>(), census.nodes);
             let stacked: usize = census.nodes_by_stack_size.iter().enumerate().map(|(size, count)| size * count).sum();
             assert_eq!(stacked, census.passes);
-            assert_eq!((census.rows, census.columns, census.loops, census.yarns), (6, 7, 42, 1));
+            assert_eq!((census.rows, census.columns, census.loops), (6, 7, 42));
             assert_eq!(census.knit_loops as f64, knit_share * 42.0);
             assert!(census.degrees_of_freedom > 3 * census.nodes && census.degrees_of_freedom < 5 * census.nodes);
             // The loops alone take 42 loop lengths; edges add some.

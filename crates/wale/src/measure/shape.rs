@@ -112,10 +112,11 @@ impl LoopCentres {
         let (down, along) = (reach(self.rows), reach(self.columns));
         // Next to an edge there is no room to both sides: the nearest place inside stands for it.
         let inward = |at: usize, reach: isize, count: usize| {
-            (at as isize).clamp(reach.min(count as isize - 1), (count as isize - 1 - reach).max(0))
+            let last = count as isize - 1 - reach;
+            (reach <= last).then(|| (at as isize).clamp(reach, last))
         };
         let at = |row: usize, column: usize| {
-            let (row, column) = (inward(row, down, self.rows), inward(column, along, self.columns));
+            let (row, column) = (inward(row, down, self.rows)?, inward(column, along, self.columns)?);
             let middle = self.at(row, column)?;
             let course = [self.at(row, column - along)?, self.at(row, column + along)?];
             let wale = [self.at(row - down, column)?, self.at(row + down, column)?];
