@@ -11,5 +11,6 @@ pub mod model;
 pub mod pattern;
 pub mod picture;
 pub mod record;
+pub mod scene;
 pub mod simulation;
 pub mod view;
