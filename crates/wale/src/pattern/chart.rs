@@ -130,8 +130,8 @@ pub struct Chart {
 
 impl Chart {
     /// Most loops that a chart may have: four nodes a loop must keep every index of the network within 32 bits, and
-    /// a fabric of this size already needs some 1.5 TB.
-    pub const MAX_LOOPS: u64 = 64_000_000;
+    /// a fabric of this size already needs some 0.4 TB.
+    pub const MAX_LOOPS: u64 = 16_000_000;
 
     /// Checks rows of stitches, the first row worked first, each from left to right as seen from the front.
     ///
@@ -390,7 +390,7 @@ mod tests {
         assert!(Chart::basket(usize::MAX, usize::MAX).is_err());
         let huge = Chart::stockinette().repeat(1_000_000, 1_000_000);
         let text = huge.unwrap_err().to_string();
-        assert!(text.contains("1000000000000 loops") && text.contains("64000000"));
+        assert!(text.contains("1000000000000 loops") && text.contains("16000000"));
     }
 
     #[test]
