@@ -38,9 +38,9 @@ void main() {
     vec3 v = placeAt(uv + d) - here;
     float length2 = dot(v, v);
     float near = max(0.0, 1.0 - length2 / (uReach * uReach * 1.5));
-    hidden += near * max(0.0, dot(v, normal) / sqrt(length2 + 1e-14) - 0.12);
+    hidden += near * max(0.0, dot(v, normal) / sqrt(length2 + 1e-14) - 0.2);
   }
-  float open = clamp(1.0 - 1.9 * hidden / float(COUNT), 0.0, 1.0);
+  float open = clamp(1.0 - 2.2 * hidden / float(COUNT), 0.0, 1.0);
   // Multiply light, not screen values, and let the colour of neighbours shine back a little.
   vec3 shade = vec3(open) / (1.0 - 0.45 * seen * (1.0 - open));
   color = vec4(seen * pow(shade, vec3(0.8)), 1.0);

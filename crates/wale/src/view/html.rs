@@ -5,7 +5,10 @@ use std::io::Write;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::{ViewData, ViewError, ViewSettings, pack::{Packed, pack}};
+use super::{
+    ViewData, ViewError, ViewSettings,
+    pack::{Packed, pack},
+};
 use crate::{
     geometry::{Solid, SolidShape},
     picture::color_map,
@@ -18,11 +21,7 @@ const LIGHT: &str = include_str!("light.glsl");
 ///
 /// # Errors
 /// If there is nothing to show, frames do not fit together, or the target cannot be written.
-pub fn write_html(
-    data: &ViewData,
-    settings: &ViewSettings,
-    mut target: impl Write,
-) -> Result<(), ViewError> {
+pub fn write_html(data: &ViewData, settings: &ViewSettings, mut target: impl Write) -> Result<(), ViewError> {
     let packed = pack(data, settings)?;
     let facts = facts(data, settings, &packed).to_string();
     // Within a script a closing tag would end it, even in a string.
@@ -60,11 +59,8 @@ pub fn write_html(
 fn facts(data: &ViewData, settings: &ViewSettings, packed: &Packed) -> Value {
     // The page's own origin is the middle of the fabric: single precision is finest there.
     let middle = 0.5 * (packed.low + packed.high);
-    let solids: Vec<DVec3> = packed
-        .kept
-        .iter()
-        .flat_map(|f| data.frames[*f].solids.iter().flat_map(Solid::extent_points))
-        .collect();
+    let solids: Vec<DVec3> =
+        packed.kept.iter().flat_map(|f| data.frames[*f].solids.iter().flat_map(Solid::extent_points)).collect();
     let low = solids.iter().fold(packed.low, |a, b| a.min(*b));
     let high = solids.iter().fold(packed.high, |a, b| a.max(*b));
     let radius = packed.yarns.iter().map(|y| y.radius).fold(0.0, f64::max);
@@ -116,10 +112,9 @@ fn solid_facts(solid: &Solid, middle: DVec3) -> Value {
     let mut facts = match solid.shape {
         SolidShape::Plane => json!({"shape": "plane"}),
         SolidShape::Sphere { radius } => json!({"shape": "sphere", "radius": radius}),
-        SolidShape::Capsule {
-            radius,
-            half_length,
-        } => json!({"shape": "capsule", "radius": radius, "half_length": half_length}),
+        SolidShape::Capsule { radius, half_length } => {
+            json!({"shape": "capsule", "radius": radius, "half_length": half_length})
+        }
         SolidShape::Box { half_extents } => json!({"shape": "box", "half_extents": triple(half_extents)}),
     };
     facts["rotation"] = json!(solid.rotation.to_array());
@@ -134,10 +129,7 @@ fn triple(v: DVec3) -> [f64; 3] {
 
 /// Text as it may stand in HTML.
 fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 #[cfg(test)]

@@ -50,11 +50,7 @@ pub struct ViewSettings {
 
 impl Default for ViewSettings {
     fn default() -> Self {
-        Self {
-            budget: 24 << 20,
-            spacing: 1.7,
-            background: [243, 242, 239],
-        }
+        Self { budget: 24 << 20, spacing: 1.7, background: [243, 242, 239] }
     }
 }
 

@@ -57,10 +57,7 @@ pub(super) fn pack(data: &ViewData, settings: &ViewSettings) -> Result<Packed, V
     let ranges: Vec<(Quantity, [f64; 2])> = quantities
         .into_iter()
         .map(|q| {
-            let all: Vec<Vec<f64>> = kept
-                .iter()
-                .flat_map(|f| data.frames[*f].scalars.of(q).iter().cloned())
-                .collect();
+            let all: Vec<Vec<f64>> = kept.iter().flat_map(|f| data.frames[*f].scalars.of(q).iter().cloned()).collect();
             (q, color_range(q, &all))
         })
         .collect();
@@ -74,15 +71,9 @@ pub(super) fn pack(data: &ViewData, settings: &ViewSettings) -> Result<Packed, V
         .collect();
     let boxes: Vec<(DVec3, DVec3)> = places
         .iter()
-        .map(|p| {
-            p.iter()
-                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)))
-        })
+        .map(|p| p.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x))))
         .collect();
-    let largest = boxes
-        .iter()
-        .map(|(a, b)| (*b - *a).max_element())
-        .fold(0.0, f64::max);
+    let largest = boxes.iter().map(|(a, b)| (*b - *a).max_element()).fold(0.0, f64::max);
     let step = (largest / f64::from(u16::MAX)).max(1e-12);
 
     let mut writer = ZlibEncoder::new(Vec::new(), Compression::default());
@@ -108,9 +99,8 @@ pub(super) fn pack(data: &ViewData, settings: &ViewSettings) -> Result<Packed, V
         }
         let mut steps = Vec::with_capacity(columns.len());
         for (c, (column, bits)) in columns.iter().enumerate() {
-            let along: Vec<i32> = (0..column.len())
-                .map(|i| column[i] - if i > 0 { column[i - 1] } else { 0 })
-                .collect();
+            let along: Vec<i32> =
+                (0..column.len()).map(|i| column[i] - if i > 0 { column[i - 1] } else { 0 }).collect();
             let folded: Vec<u32> = along
                 .iter()
                 .enumerate()
@@ -150,11 +140,7 @@ fn keep(count: usize, most: usize) -> Vec<usize> {
 
 /// Whether there is a value for each point.
 fn matches(values: &[Vec<f64>], curves: &[Curve]) -> bool {
-    values.len() == curves.len()
-        && values
-            .iter()
-            .zip(curves)
-            .all(|(v, c)| v.len() == c.points.len())
+    values.len() == curves.len() && values.iter().zip(curves).all(|(v, c)| v.len() == c.points.len())
 }
 
 /// Checks all curves and decides where the points of each yarn lie.
@@ -162,20 +148,10 @@ fn lay_out(data: &ViewData, settings: &ViewSettings) -> Result<Vec<PackedYarn>, 
     let first = data.frames.first().ok_or(ViewError::Nothing)?;
     for (frame, f) in data.frames.iter().enumerate() {
         if f.curves.len() != first.curves.len() {
-            return Err(ViewError::YarnCount {
-                frame,
-                found: f.curves.len(),
-                expected: first.curves.len(),
-            });
+            return Err(ViewError::YarnCount { frame, found: f.curves.len(), expected: first.curves.len() });
         }
         for (yarn, curve) in f.curves.iter().enumerate() {
-            let wrong = |reason| {
-                Err(ViewError::Curve {
-                    frame,
-                    yarn,
-                    reason,
-                })
-            };
+            let wrong = |reason| Err(ViewError::Curve { frame, yarn, reason });
             if curve.arc_length.len() != curve.points.len() {
                 return wrong("it has not one arc length a point");
             }
@@ -271,10 +247,7 @@ fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {
-        let word = three
-            .iter()
-            .fold(0u32, |w, b| w << 8 | u32::from(*b))
-            << (8 * (3 - three.len()));
+        let word = three.iter().fold(0u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - three.len()));
         for k in 0..4 {
             if k <= three.len() {
                 text.push(char::from(LETTERS[(word >> (18 - 6 * k) & 63) as usize]));
@@ -299,9 +272,8 @@ pub(super) mod tests {
             let t = f as f64 / frames.max(2) as f64;
             let n = 400;
             let s = |i: usize| i as f64 / n as f64;
-            let points: Vec<DVec3> = (0..=n)
-                .map(|i| DVec3::new(0.1 * s(i) + 0.05 * t, 0.01 * (30.0 * s(i) + t).sin(), 0.01 * t))
-                .collect();
+            let points: Vec<DVec3> =
+                (0..=n).map(|i| DVec3::new(0.1 * s(i) + 0.05 * t, 0.01 * (30.0 * s(i) + t).sin(), 0.01 * t)).collect();
             let ramp: Vec<f64> = (0..=n).map(|i| (s(i) - 0.5) * t).collect();
             ViewFrame {
                 time: t,
@@ -312,19 +284,11 @@ pub(super) mod tests {
                     radius: 5e-4,
                     color: [200, 40, 40],
                 }],
-                scalars: PointScalars {
-                    stretch: vec![ramp],
-                    ..PointScalars::default()
-                },
+                scalars: PointScalars { stretch: vec![ramp], ..PointScalars::default() },
                 solids: Vec::new(),
             }
         };
-        ViewData {
-            title: "waving".to_owned(),
-            frames: (0..frames).map(frame).collect(),
-            plies: 3,
-            twist: 200.0,
-        }
+        ViewData { title: "waving".to_owned(), frames: (0..frames).map(frame).collect(), plies: 3, twist: 200.0 }
     }
 
     fn unbase64(text: &str) -> Vec<u8> {
@@ -356,9 +320,7 @@ pub(super) mod tests {
         let data = waving(4);
         let packed = pack(&data, &ViewSettings::default()).unwrap();
         let mut raw = Vec::new();
-        flate2::read::ZlibDecoder::new(&unbase64(&packed.text)[..])
-            .read_to_end(&mut raw)
-            .unwrap();
+        flate2::read::ZlibDecoder::new(&unbase64(&packed.text)[..]).read_to_end(&mut raw).unwrap();
         assert_eq!(packed.quantities.len(), 1);
         let n = packed.yarns[0].points;
         assert_eq!(raw.len(), 4 * n * 7);
@@ -406,10 +368,7 @@ pub(super) mod tests {
         assert_eq!(keep(9, 5), [0, 2, 4, 6, 8]);
         assert_eq!(keep(9, 1), [8]);
         let data = waving(40);
-        let settings = ViewSettings {
-            budget: 12_000,
-            ..ViewSettings::default()
-        };
+        let settings = ViewSettings { budget: 12_000, ..ViewSettings::default() };
         let packed = pack(&data, &settings).unwrap();
         assert!(packed.kept.len() > 2 && packed.kept.len() < 20);
         assert_eq!(packed.kept.last(), Some(&39));
