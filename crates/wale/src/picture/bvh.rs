@@ -55,7 +55,8 @@ pub struct Hit {
 }
 
 const BINS: usize = 16;
-const LEAF_SIZE: usize = 4;
+/// Testing four boxes at once is cheaper than testing one yarn, so leaves are small.
+const LEAF_SIZE: usize = 1;
 /// Below this many primitives a subtree is built on the thread that found it.
 const PARALLEL_SIZE: usize = 4096;
 const LEAF_BIT: u32 = 1 << 31;

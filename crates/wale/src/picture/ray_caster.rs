@@ -32,6 +32,8 @@ const KEY_SPREAD: f32 = 0.07;
 /// How far things dim the light from all around, in yarn radii.
 const AMBIENT_REACH: f32 = 7.0;
 
+/// Light that the ground keeps in the deepest shadow: paper shines through.
+const GROUND_SHADE: f32 = 0.3;
 /// Samples of a pixel that must find plain background for the rest to be left out.
 const PLAIN_SAMPLES: u32 = 2;
 
@@ -256,7 +258,8 @@ impl<'a> Stage<'a> {
                 if key == 1.0 && open == 1.0 {
                     return self.background;
                 }
-                self.background * ((direct * key + around * open) / (direct + around))
+                let share = (direct * key + around * open) / (direct + around);
+                self.background * (GROUND_SHADE + (1.0 - GROUND_SHADE) * share)
             }
         }
     }
@@ -346,7 +349,7 @@ impl<'a> Stage<'a> {
         let normal = (outward * smooth + sideways * around + along * tangent).normalize_or(smooth);
         let (key, open) = self.arriving(at, smooth, dice);
         let groove = 1.0 - 0.5 * (1.0 - spun.crest) * (1.0 - spun.crest);
-        let color = a.color.lerp(b.color, s) * (1.0 + 0.22 * spun.streak);
+        let color = a.color.lerp(b.color, s) * (1.0 + 0.30 * spun.streak);
         self.lit(color.min(Vec3::splat(0.95)), normal, -ray.direction, key * groove.sqrt(), open * groove) * groove
     }
 }

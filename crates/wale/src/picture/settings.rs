@@ -91,7 +91,7 @@ impl Default for Settings {
         Self {
             width: 1600,
             height: 1200,
-            samples: 6,
+            samples: 4,
             background: [243, 242, 239],
             color_mode: ColorMode::Yarn,
             color_range: None,
