@@ -273,7 +273,7 @@ fn numbers_that_are_none_are_refused_by_every_format() {
         |s: &mut Snapshot| s.fields[0].values[1] = f64::NAN,
         |s: &mut Snapshot| s.fields[0].values.truncate(1),
         |s: &mut Snapshot| s.time = f64::NAN,
-        |s: &mut Snapshot| drop(s.curves[0].pass.pop()),
+        |s: &mut Snapshot| s.curves[0].pass.truncate(1),
     ] {
         for format in Format::ALL {
             let mut snapshots = run(2);
@@ -300,7 +300,8 @@ fn a_stream_that_fails_is_an_error() {
     let settings = Settings::default();
     let usda = write_usda(&mut Full, &mut snapshots, &settings);
     assert!(matches!(usda, Err(ExportError::Stream(_))));
-    for write in [write_vtp::<Full>, write_bcc, write_obj, write_ply] {
+    type Writer = fn(&mut Full, &Snapshot, &Settings) -> Result<(), ExportError>;
+    for write in [write_vtp as Writer, write_bcc, write_obj, write_ply] {
         let result = write(&mut Full, &snapshots[0], &settings);
         assert!(matches!(result, Err(ExportError::Stream(_))));
     }
