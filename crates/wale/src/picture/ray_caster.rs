@@ -154,6 +154,9 @@ impl<'a> Stage<'a> {
             low.is_finite().then_some((normal.as_vec3(), (low - 1.02 * radius) as f32))
         });
         let key = -0.62 * camera.right + 0.62 * camera.up + 0.60 * camera.back;
+        // The light that the shoulder bends to the colour that was asked for.
+        let background = to_linear(settings.background)
+            .map(|y| if y <= 0.8 { y } else { 0.8 - 0.2 * (1.0 - (y.min(0.9999) - 0.8) / 0.2).ln() });
         // Hair finer than a fortieth of a pixel is not worth its rays.
         let pixels = radius / camera.height * settings.height as f64;
         let hair = if settings.hair > 0.0 && pixels > 2.0 {
@@ -169,8 +172,8 @@ impl<'a> Stage<'a> {
             tubes: Tubes::new(subject.curves, colors, camera.target),
             solids: subject.solids.iter().map(|s| PlacedSolid::new(s, camera.target)).collect(),
             ground,
-            background: to_linear(settings.background),
-            plain: shoulder(to_linear(settings.background)),
+            background,
+            plain: shoulder(background),
             to_key: key.normalize().as_vec3(),
             up: camera.up.as_vec3(),
             reach: AMBIENT_REACH * (if radius > 0.0 { radius } else { 0.01 * camera.height }) as f32,
@@ -392,4 +395,100 @@ fn shoulder(light: Vec3) -> Vec3 {
         if x <= 0.8 { x } else { 0.8 + 0.2 * (1.0 - (-(x - 0.8) / 0.2).exp()) }
     };
     Vec3::new(one(light.x), one(light.y), one(light.z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        geometry::{Curve, PointScalars, Solid, SolidShape},
+        picture::{Projection, View},
+    };
+
+    /// Two straight yarns along x, the second on the key light's far side, and a ball under them.
+    fn subject() -> (Vec<Curve>, Vec<Solid>) {
+        let yarn = |y: f64, color: [u8; 3]| Curve {
+            points: (0..21).map(|i| DVec3::new(f64::from(i) * 1e-3, y, 0.0)).collect(),
+            arc_length: (0..21).map(|i| f64::from(i) * 1e-3).collect(),
+            pass: vec![0; 21],
+            radius: 1e-3,
+            color,
+        };
+        let ball = Solid::new(SolidShape::Sphere { radius: 2e-3 }, DVec3::new(0.01, -0.006, 0.0));
+        (vec![yarn(0.0, [200, 30, 30]), yarn(0.004, [30, 30, 200])], vec![ball])
+    }
+
+    fn small() -> Settings {
+        Settings { width: 120, height: 90, scale_bar: false, ..Settings::default() }
+    }
+
+    fn picture(settings: &Settings) -> Image {
+        let (curves, solids) = subject();
+        let subject = Subject { curves: &curves, scalars: None, solids: &solids };
+        let (points, radius) = subject.extent_points();
+        let camera = Camera::framing(View::Front, Projection::Orthographic, &points, radius, 4.0 / 3.0, 0.1);
+        render(&subject, &camera, settings)
+    }
+
+    #[test]
+    fn yarns_ball_and_ground_show_their_colours() {
+        let image = picture(&small());
+        let count = |test: &dyn Fn([u8; 3]) -> bool| image.pixels.iter().filter(|p| test(**p)).count();
+        assert!(count(&|p| p[0] / 2 > p[2]) > 300, "red yarn");
+        assert!(count(&|p| p[2] / 2 > p[0]) > 300, "blue yarn");
+        let background = small().background;
+        assert_eq!(image.pixel(0, 0), background);
+        let grey = |p: [u8; 3]| p.iter().max().unwrap() - p.iter().min().unwrap() < 20 && p[0] < 225;
+        assert!(count(&grey) > 100, "ball or shadow");
+    }
+
+    #[test]
+    fn things_throw_shadows_on_the_ground_only_if_there_is_one() {
+        let background = small().background;
+        let plain = |settings: &Settings| picture(settings).pixels.iter().filter(|p| **p == background).count();
+        let (with, without) = (plain(&small()), plain(&Settings { ground: None, ..small() }));
+        assert!(without > with + 200, "{without} {with}");
+    }
+
+    #[test]
+    fn one_and_four_threads_make_the_same_bits() {
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| picture(&small()))
+        };
+        assert!(on(1) == on(4));
+    }
+
+    #[test]
+    fn colours_follow_the_numbers() {
+        let (curves, _) = subject();
+        let rising = |c: &Curve| c.points.iter().map(|p| p.x * 1e3).collect::<Vec<f64>>();
+        let scalars = PointScalars { curvature: curves.iter().map(rising).collect(), ..PointScalars::default() };
+        let subject = Subject { curves: &curves, scalars: Some(&scalars), solids: &[] };
+        let settings = Settings { color_mode: ColorMode::By(Quantity::Curvature), ..small() };
+        let (colors, legend) = point_colors(&subject, &settings);
+        let brightness = |v: Vec3| v.x + v.y + v.z;
+        assert!(brightness(colors[0][20]) > 5.0 * brightness(colors[0][0]));
+        let legend = legend.unwrap();
+        assert_eq!(legend.title, "curvature [1/mm]");
+        assert!((legend.range[1] - 0.02).abs() < 1e-3, "{legend:?}");
+        // Without numbers the yarn keeps its own colour.
+        let (colors, legend) = point_colors(&Subject { scalars: None, ..subject }, &settings);
+        assert!(legend.is_none() && colors[0][0].x > colors[0][0].z);
+    }
+
+    #[test]
+    fn ranges_are_even_about_zero_where_sign_matters() {
+        let values = vec![vec![-0.02, 0.0, 0.05, f64::NAN]];
+        assert_eq!(color_range(Quantity::Stretch, &values), [-0.05, 0.05]);
+        assert_eq!(color_range(Quantity::Curvature, &[vec![200.0, 3.0]]), [0.0, 200.0]);
+        assert!(color_range(Quantity::Sliding, &[])[1] > 0.0);
+    }
+
+    #[test]
+    fn an_empty_picture_is_background() {
+        let camera = Camera::framing(View::Front, Projection::Orthographic, &[], 0.0, 1.0, 0.1);
+        let image = render(&Subject::default(), &camera, &small());
+        assert!(image.pixels.iter().all(|p| *p == small().background));
+    }
 }

@@ -99,7 +99,7 @@ impl Default for Settings {
             twist: 150.0,
             hair: 3.0,
             ground: Some(DVec3::Z),
-            ambient_rays: 2,
+            ambient_rays: 1,
             scale_bar: true,
             caption: None,
         }

@@ -25,7 +25,7 @@ pub fn write_html(data: &ViewData, settings: &ViewSettings, mut target: impl Wri
     let packed = pack(data, settings)?;
     let facts = facts(data, settings, &packed).to_string();
     // Within a script a closing tag would end it, even in a string.
-    let facts = facts.replace("</", "<\\/").replace("<!--", "<\\!--");
+    let facts = facts.replace('<', "\\u003c");
     let yarn = [LIGHT, include_str!("yarn.frag.glsl")].concat();
     let solid = [LIGHT, include_str!("solid.frag.glsl")].concat();
     let title = escaped(&data.title);
