@@ -52,7 +52,8 @@ impl RunLoop {
         progress.end();
         ended?;
         let (seconds, steps) = progress.spent();
-        self.run.write_summary(&self.summary(seconds, steps))?;
+        let summary = self.summary(seconds, steps);
+        self.run.write_summary(&summary)?;
         if !self.quiet {
             output::note(&format!(
                 "{}: done; {} steps and {} frames in {}",
