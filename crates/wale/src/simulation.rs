@@ -251,6 +251,11 @@ impl Simulation {
         self.state.next_step_size = next_step_size;
     }
 
+    /// A report of the state as it stands, as of a step of no length.
+    pub fn standing(&mut self) -> StepReport {
+        self.report(0.0, 0, NewtonReport::default())
+    }
+
     fn report(&mut self, h: f64, rejected: u32, newton: NewtonReport) -> StepReport {
         let (largest_stretch, smallest_spacing) = self.system.extremes(&self.state.coordinates);
         StepReport {

@@ -1,38 +1,50 @@
 //! scratch
-use glam::DVec3;
-use wale::geometry::Curve;
+use wale::geometry::*;
+use wale::model::*;
+use wale::pattern::{chart::*, knit};
 use wale::picture::*;
 
-pub fn stockinette(rows: usize, columns: usize, samples: usize, yarns: [[u8; 3]; 2]) -> Vec<Curve> {
-    let (w, c, r) = (5.0e-3, 3.6e-3, 0.85e-3);
-    (0..rows)
-        .map(|row| {
-            let mut points = vec![];
-            for i in 0..=(columns * samples) {
-                let t = i as f64 / samples as f64 * std::f64::consts::TAU;
-                let x = w * (t / std::f64::consts::TAU) + 0.26 * w * (2.0 * t).sin();
-                let y = c * row as f64 - 0.95 * c * (t).cos();
-                let z = -1.05 * r * (2.0 * t).cos();
-                points.push(DVec3::new(x, y, z));
-            }
-            let mut u = vec![0.0];
-            for p in points.windows(2) {
-                u.push(u.last().unwrap() + p[0].distance(p[1]));
-            }
-            Curve { pass: vec![0; points.len()], arc_length: u, radius: r, color: yarns[row / 6 % 2], points }
-        })
-        .collect()
+fn card() -> FabricCard {
+    FabricCard {
+        loop_length: 17.0e-3,
+        transition_length: 0.0,
+        stitch_length: 1.7e-3,
+        wale_spacing: 5.0e-3,
+        course_spacing: 3.8e-3,
+        wrapping_stiffness: 1.0,
+        wrapping_angle_course: 0.0,
+        wrapping_angle_leg: 0.0,
+        bend_angle_foot_head: 0.0,
+        bend_angle_leg: 0.0,
+        length_stiffness: 1.0,
+        spacing_stiffness: 1.0,
+        spacing_leg: 1e-3,
+        spacing_head_sinker: 1e-3,
+        anchor_stiffness: 1.0,
+        residual_compression: 0.0,
+    }
 }
 
 #[test]
 fn look() {
-    let curves = stockinette(14, 10, 48, [[176, 42, 48], [228, 221, 205]]);
-    let subject = Subject { curves: &curves, ..Default::default() };
+    let n: usize = std::env::var("N").map_or(12, |n| n.parse().unwrap());
+    let chart = Chart::stockinette().repeat(n, n).unwrap();
+    let mut network = knit::fabric(&chart, Working::default(), &card());
+    network.yarn_color = vec![[176, 62, 54]; network.yarn_count()];
+    let frame = Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() };
+    let curves = curves(&network, &frame, &CurveSettings::new(0.62e-3));
+    let scalars = coloring::point_scalars(&network, &frame, &curves);
+    println!("points {}", curves.iter().map(|c| c.points.len()).sum::<usize>());
+    let subject = Subject { curves: &curves, scalars: Some(&scalars), ..Default::default() };
     let (points, radius) = subject.extent_points();
-    for (name, view) in [("front", View::Front), ("nice", View::ThreeQuarter)] {
+    for (name, view, mode) in
+        [("front", "front", "yarn"), ("nice", "three-quarter", "yarn"), ("curvature", "back", "curvature")]
+    {
+        let view: View = view.parse().unwrap();
         let settings = Settings {
-            twist: 110.0,
-            caption: Some("stockinette, 14 × 10 loops".into()),
+            twist: 130.0,
+            color_mode: mode.parse().unwrap(),
+            caption: Some("stockinette".into()),
             ground: Some(view.ground_normal()),
             ..Settings::default()
         };
@@ -41,5 +53,8 @@ fn look() {
         let image = render(&subject, &camera, &settings);
         println!("{name} {:?}", t.elapsed());
         write_png(&image, std::fs::File::create(format!("/tmp/pics/{name}.png")).unwrap()).unwrap();
+        if std::env::var("ONE").is_ok() {
+            break;
+        }
     }
 }

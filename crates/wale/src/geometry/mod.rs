@@ -2,8 +2,9 @@
 
 pub mod coloring;
 pub mod curve;
-mod parallel_transport;
+pub(crate) mod parallel_transport;
 mod passes;
+pub mod obstacle_solid;
 pub mod ply_twist;
 #[cfg(test)]
 pub(crate) mod sample_fabric;
@@ -16,6 +17,7 @@ pub mod yarn_geometry;
 
 pub use coloring::{PointScalars, Quantity};
 pub use curve::Curve;
+pub use obstacle_solid::solid_at;
 pub use ply_twist::ply_curves;
 pub use solid::{Solid, SolidShape};
 pub use stretch::segment_stretch;

@@ -55,7 +55,8 @@ pub struct Hit {
 }
 
 const BINS: usize = 16;
-const LEAF_SIZE: usize = 4;
+/// Testing four boxes at once is cheaper than testing one yarn, so leaves are small.
+const LEAF_SIZE: usize = 1;
 /// Below this many primitives a subtree is built on the thread that found it.
 const PARALLEL_SIZE: usize = 4096;
 const LEAF_BIT: u32 = 1 << 31;
@@ -69,12 +70,10 @@ struct Node {
     child: [u32; 4],
 }
 
-/// The tree over a list of boxes.
+/// The tree over a list of boxes. It names primitives by their place in leaf order, so that a leaf's lie side by side.
 #[derive(Clone, Debug, Default)]
 pub struct Bvh {
     nodes: Vec<Node>,
-    /// Primitive indices in leaf order.
-    order: Vec<u32>,
 }
 
 enum Branch {
@@ -83,22 +82,23 @@ enum Branch {
 }
 
 impl Bvh {
-    /// Builds the tree over at most 2²⁹ boxes.
+    /// Builds the tree over at most 2²⁹ boxes, and tells the order in which it wants the primitives: the k-th of its
+    /// primitives is the box `order[k]`.
     #[must_use]
-    pub fn new(boxes: &[Bounds]) -> Self {
-        if boxes.is_empty() {
-            return Self::default();
-        }
+    pub fn new(boxes: &[Bounds]) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..u32::try_from(boxes.len()).unwrap_or(0)).collect();
+        if order.is_empty() {
+            return (Self::default(), order);
+        }
         let whole = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
         let root = split(boxes, &mut order, 0);
-        let mut tree = Self { nodes: Vec::with_capacity(boxes.len() / 4 + 1), order };
+        let mut tree = Self { nodes: Vec::with_capacity(boxes.len() / 4 + 1) };
         // The root is always a node, so that a tree of one leaf needs no special walk.
         match root {
             Branch::Leaf { .. } => tree.fold(vec![(whole, root)]),
             Branch::Inner(children) => tree.fold(Vec::from(*children)),
         };
-        tree
+        (tree, order)
     }
 
     /// Writes the node with the given children and returns its index.
@@ -175,9 +175,9 @@ impl Bvh {
                 continue;
             }
             if code & LEAF_BIT != 0 {
-                let first = (code & !(LEAF_BIT | (3 << 29))) as usize;
-                let count = ((code >> 29) & 3) as usize + 1;
-                for &primitive in &self.order[first..first + count] {
+                let first = code & !(LEAF_BIT | (3 << 29));
+                let count = ((code >> 29) & 3) + 1;
+                for primitive in first..first + count {
                     let (new_limit, stop) = visit(primitive);
                     if stop {
                         return;
@@ -196,11 +196,12 @@ impl Bvh {
                 leave = leave.min(t0.max(t1));
             }
             let hit = enter.cmple(leave * (1.0 + 4.0 * f32::EPSILON)).bitmask();
+            let nears = enter.to_array();
             let start = depth;
             for slot in 0..4 {
                 if hit & (1 << slot) != 0 && node.child[slot] != NO_CHILD && depth < stack.len() {
                     // Insertion keeps the nearest child on top of the stack.
-                    let near = enter[slot];
+                    let near = nears[slot];
                     let mut i = depth;
                     while i > start && stack[i - 1].1 < near {
                         stack[i] = stack[i - 1];
@@ -318,7 +319,8 @@ mod tests {
                     Bounds { min: p, max: p + e }
                 })
                 .collect();
-            let tree = Bvh::new(&boxes);
+            let (tree, order) = Bvh::new(&boxes);
+            let boxes: Vec<Bounds> = order.iter().map(|i| boxes[*i as usize]).collect();
             let mut hits = 0;
             for _ in 0..300 {
                 let origin = Vec3::from_array([0; 3].map(|_: i32| 3.0 * random(&mut seed) - 1.0));
@@ -338,7 +340,7 @@ mod tests {
     #[test]
     fn boxes_that_coincide_and_no_boxes_are_fine() {
         let b = Bounds { min: Vec3::ZERO, max: Vec3::ONE };
-        let tree = Bvh::new(&vec![b; 1000]);
+        let (tree, _) = Bvh::new(&vec![b; 1000]);
         let ray = Ray { origin: Vec3::new(0.5, 0.5, -2.0), direction: Vec3::Z };
         let mut visited = 0;
         tree.any(ray, 10.0, |_, _| {
@@ -346,6 +348,6 @@ mod tests {
             None
         });
         assert_eq!(visited, 1000);
-        assert!(!Bvh::new(&[]).any(ray, 10.0, |_, _| Some(0.0)));
+        assert!(!Bvh::new(&[]).0.any(ray, 10.0, |_, _| Some(0.0)));
     }
 }

@@ -225,8 +225,8 @@ mod tests {
         for (i, (c, rows)) in LETTERS.iter().enumerate() {
             assert!(!strokes(*c).is_empty(), "{c}");
             for (d, other) in &LETTERS[..i] {
-                // Dash and minus look alike on purpose.
-                assert!(rows != other || (*d == '\u{2013}' && *c == '\u{2212}'), "{c} {d}");
+                // Dash and minus, nought and O look alike on purpose.
+                assert!(rows != other || (*d == '\u{2013}' && *c == '\u{2212}') || (*d == '0' && *c == 'O'), "{c} {d}");
             }
         }
         assert_eq!(rows('\u{4e00}'), UNKNOWN);

@@ -109,7 +109,7 @@ mod tests {
         near(entry(capsule, DVec3::Z, from, down), 10.0 - 2.4, Vec3::new(0.6, 0.0, 0.8));
         let slab = SolidShape::Box { half_extents: DVec3::new(1.0, 2.0, 0.25) };
         near(entry(slab, DVec3::Z, from, down), 9.75, Vec3::Z);
-        near(entry(slab, DVec3::X, from, down), 9.0, Vec3::Z);
+        near(entry(slab, DVec3::X, Vec3::new(0.2, 0.0, 10.0), down), 9.0, Vec3::Z);
         assert!(entry(slab, DVec3::Z, Vec3::new(1.5, 0.0, 10.0), down).is_none());
         assert!(entry(SolidShape::Plane, -DVec3::Z, from, down).is_none());
     }

@@ -32,8 +32,8 @@ pub(super) fn surface(spin: Spin, angle: f32, arc_length: f64, detail: f32) -> S
     let slope = TAU * (spin.twist * spin.radius) as f32;
     let length = (arc_length / spin.radius).rem_euclid(4096.0) as f32;
     if spin.plies < 2 {
-        let streak = fibres(around / TAU, 14, length, 0);
-        return tilted(0.25 * detail * streak, slope, 1.0, streak * detail);
+        let streak = fibres(around / TAU, 36, length, 0);
+        return tilted(0.45 * detail * streak, slope, 1.0, streak * detail);
     }
     let plies = spin.plies as f32;
     let half = PI / plies;
@@ -51,8 +51,8 @@ pub(super) fn surface(spin: Spin, angle: f32, arc_length: f64, detail: f32) -> S
     let crest = (reach / ply).clamp(0.0, 1.0);
     // Fibres of a ply are spun against the plies' own twist, so that they run nearly along the yarn.
     let within = y.atan2(x) / TAU - 0.55 * slope / TAU * length;
-    let streak = fibres(within, 9, length, sector as i32);
-    tilted(detail * (tilt + 0.22 * streak), slope, 1.0 - detail * (1.0 - crest), detail * streak)
+    let streak = fibres(within, 24, length, sector as i32);
+    tilted(detail * (tilt + 0.45 * streak), slope, 1.0 - detail * (1.0 - crest), detail * streak)
 }
 
 fn tilted(tilt: f32, slope: f32, crest: f32, streak: f32) -> Surface {
@@ -69,7 +69,7 @@ fn fibres(around: f32, count: i32, length: f32, ply: i32) -> f32 {
     for (octave, weight) in [(1, 0.6), (2, 0.4)] {
         let count = count * octave;
         let x = around.rem_euclid(1.0) * count as f32;
-        let y = length * (0.22 * octave as f32);
+        let y = length * (0.30 * octave as f32);
         let (x0, y0) = (x.floor(), y.floor());
         let ease = |t: f32| t * t * (3.0 - 2.0 * t);
         let (fx, fy) = (ease(x - x0), ease(y - y0));
