@@ -2,5 +2,13 @@
 
 pub mod block_matrix;
 pub mod block_pattern;
+pub mod coarse_space;
+pub mod conjugate_gradient;
+pub mod incomplete_cholesky;
+pub mod preconditioner;
+pub mod prolongation;
 pub mod scalar;
+mod small_block;
 pub mod sparse_cholesky;
+pub mod triad;
+pub mod vector;
