@@ -32,19 +32,11 @@ fn shortest(rounds: usize, mut run: impl FnMut()) -> f64 {
 
 fn report(name: &str, seconds: f64, bytes: usize, triad: f64) {
     let speed = bytes as f64 / seconds;
-    println!(
-        "{name:<28} {:9.3} ms  {:6.1} GB/s  {:5.2} of triad",
-        seconds * 1e3,
-        speed / 1e9,
-        speed / triad
-    );
+    println!("{name:<28} {:9.3} ms  {:6.1} GB/s  {:5.2} of triad", seconds * 1e3, speed / 1e9, speed / triad);
 }
 
 fn incomplete<T: Scalar>(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad: f64) {
-    let settings = IncompleteCholeskySettings {
-        max_domains: domains,
-        ..Default::default()
-    };
+    let settings = IncompleteCholeskySettings { max_domains: domains, ..Default::default() };
     let mut factor = IncompleteCholesky::<T>::new(Arc::clone(matrix.pattern()), settings);
     let mut outcome = None;
     let seconds = shortest(3, || outcome = Some(factor.factor(matrix)));
@@ -65,11 +57,7 @@ fn incomplete<T: Scalar>(name: &str, matrix: &BlockMatrix, b: &[f64], domains: u
 
 fn kernels(wales: usize, courses: usize) {
     let start = Instant::now();
-    let Swatch {
-        matrix,
-        coordinates,
-        free,
-    } = swatch(wales, courses);
+    let Swatch { matrix, coordinates, free } = swatch(wales, courses);
     let rows = matrix.rows();
     let pattern = matrix.pattern();
     println!(
@@ -83,9 +71,8 @@ fn kernels(wales: usize, courses: usize) {
     vector::keep_free(&mut b, &free);
     let mut x = vec![0.0; b.len()];
 
-    let product_bytes = |width| {
-        pattern.block_count() * (25 * width + 4) + rows * (2 * SLOTS * width + size_of::<usize>())
-    };
+    let product_bytes =
+        |width| pattern.block_count() * (25 * width + 4) + rows * (2 * SLOTS * width + size_of::<usize>());
     let seconds = shortest(20, || matrix.multiply(&b, &mut x));
     report("product f64", seconds, product_bytes(8), triad);
     let mut narrow = BlockMatrix::<f32>::zeros(Arc::clone(pattern));
@@ -113,11 +100,7 @@ fn kernels(wales: usize, courses: usize) {
     let start = Instant::now();
     let hats = Prolongation::bilinear(&coordinates, 6.0);
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &free).unwrap();
-    println!(
-        "coarse: {} unknowns, set up in {:.0} ms",
-        coarse.unknowns(),
-        start.elapsed().as_secs_f64() * 1e3
-    );
+    println!("coarse: {} unknowns, set up in {:.0} ms", coarse.unknowns(), start.elapsed().as_secs_f64() * 1e3);
     let seconds = shortest(3, || {
         coarse.factor(&matrix).unwrap();
     });
@@ -125,23 +108,17 @@ fn kernels(wales: usize, courses: usize) {
     let seconds = shortest(10, || coarse.add(&b, &mut x));
     report("coarse apply", seconds, rows * 100, triad);
 
-    let mut local =
-        IncompleteCholesky::<f32>::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
+    let mut local = IncompleteCholesky::<f32>::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
     local.factor(&matrix).unwrap();
     let mut gradient = ConjugateGradient::new(b.len());
     for tolerance in [1e-1, 1e-2] {
-        let settings = ConjugateGradientSettings {
-            relative_tolerance: tolerance,
-            max_iterations: 200,
-            absolute_tolerance: 0.0,
-        };
+        let settings =
+            ConjugateGradientSettings { relative_tolerance: tolerance, max_iterations: 200, absolute_tolerance: 0.0 };
         let mut iterations = 0;
         let seconds = shortest(2, || {
             x.fill(0.0);
             let mut both = Additive(&mut local, &mut coarse);
-            iterations = gradient
-                .solve(&matrix, &mut both, &b, &mut x, None, &settings)
-                .iterations;
+            iterations = gradient.solve(&matrix, &mut both, &b, &mut x, None, &settings).iterations;
         });
         println!(
             "PCG to {tolerance:.0e}: {iterations} iterations, {:.1} ms each",
@@ -151,8 +128,7 @@ fn kernels(wales: usize, courses: usize) {
 
     if rows <= 25_000 {
         let start = Instant::now();
-        let mut direct =
-            SparseCholesky::new(Arc::clone(pattern), &free, BlockOrder::MinimumDegree).unwrap();
+        let mut direct = SparseCholesky::new(Arc::clone(pattern), &free, BlockOrder::MinimumDegree).unwrap();
         println!(
             "direct: symbolic {:.0} ms, {:.1} values an unknown",
             start.elapsed().as_secs_f64() * 1e3,
@@ -170,14 +146,9 @@ fn kernels(wales: usize, courses: usize) {
 }
 
 fn main() {
-    let sizes: Vec<usize> = std::env::args()
-        .skip(1)
-        .filter_map(|s| s.parse().ok())
-        .collect();
+    let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|s| s.parse().ok()).collect();
     match sizes[..] {
         [wales, courses] => kernels(wales, courses),
-        _ => [[30, 30], [70, 70], [112, 112], [237, 237]]
-            .iter()
-            .for_each(|&[wales, courses]| kernels(wales, courses)),
+        _ => [[30, 30], [70, 70], [112, 112], [237, 237]].iter().for_each(|&[wales, courses]| kernels(wales, courses)),
     }
 }

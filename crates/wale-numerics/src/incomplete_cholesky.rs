@@ -107,12 +107,7 @@ impl<T: Scalar> IncompleteCholesky<T> {
             .step_by(rows_per_domain)
             .map(|first| Domain::new(&pattern, first, rows.min(first + rows_per_domain)))
             .collect();
-        Self {
-            pattern,
-            settings,
-            rows_per_domain,
-            domains,
-        }
+        Self { pattern, settings, rows_per_domain, domains }
     }
 
     /// Factors a matrix, from which fixed slots have been taken out
@@ -125,21 +120,13 @@ impl<T: Scalar> IncompleteCholesky<T> {
     ///
     /// # Panics
     /// If the matrix is over another pattern.
-    pub fn factor(
-        &mut self,
-        matrix: &BlockMatrix,
-    ) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
+    pub fn factor(&mut self, matrix: &BlockMatrix) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
         assert_eq!(matrix.pattern().block_count(), self.pattern.block_count());
         let settings = &self.settings;
-        self.domains
-            .par_iter_mut()
-            .for_each(|domain| domain.factor(matrix, settings));
+        self.domains.par_iter_mut().for_each(|domain| domain.factor(matrix, settings));
         let first_shift = self.settings.shifts.first().copied().unwrap_or(0.0);
-        let mut report = IncompleteCholeskyReport {
-            largest_shift: 0.0,
-            shifted_domains: 0,
-            domains: self.domains.len(),
-        };
+        let mut report =
+            IncompleteCholeskyReport { largest_shift: 0.0, shifted_domains: 0, domains: self.domains.len() };
         for domain in &self.domains {
             match domain.outcome {
                 Ok(shift) => {
@@ -210,21 +197,14 @@ impl<T: Scalar> Domain<T> {
 
     fn factor(&mut self, matrix: &BlockMatrix, settings: &IncompleteCholeskySettings) {
         for &shift in &settings.shifts {
-            self.outcome = self
-                .factor_shifted(matrix, 1.0 + shift, settings.smallest_pivot)
-                .map(|()| shift);
+            self.outcome = self.factor_shifted(matrix, 1.0 + shift, settings.smallest_pivot).map(|()| shift);
             if self.outcome.is_ok() {
                 return;
             }
         }
     }
 
-    fn factor_shifted(
-        &mut self,
-        matrix: &BlockMatrix,
-        diagonal_factor: f64,
-        smallest_pivot: f64,
-    ) -> Result<(), usize> {
+    fn factor_shifted(&mut self, matrix: &BlockMatrix, diagonal_factor: f64, smallest_pivot: f64) -> Result<(), usize> {
         let blocks = matrix.blocks();
         for row in 0..self.inverse_diagonal.len() {
             let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
@@ -254,13 +234,8 @@ impl<T: Scalar> Domain<T> {
                 let shifted = if r == c { diagonal_factor } else { 1.0 };
                 block[k] * shifted - sums[c][r].to_f64()
             });
-            let kept = (0..SLOTS)
-                .all(|s| remains[s * (SLOTS + 1)] > smallest_pivot * block[s * (SLOTS + 1)]);
-            let inverse = if kept {
-                inverse_of_positive(&remains, smallest_pivot)
-            } else {
-                None
-            };
+            let kept = (0..SLOTS).all(|s| remains[s * (SLOTS + 1)] > smallest_pivot * block[s * (SLOTS + 1)]);
+            let inverse = if kept { inverse_of_positive(&remains, smallest_pivot) } else { None };
             let inverse = inverse.ok_or(global)?;
             for (entry, value) in self.inverse_diagonal[row].iter_mut().zip(inverse) {
                 *entry = T::from_f64(value);
@@ -272,12 +247,7 @@ impl<T: Scalar> Domain<T> {
     /// Adds `Σ (L D⁻¹)ᵢⱼ Lₖⱼᵀ` over the columns that the present row `i`, up to the place being
     /// computed, has in common with row `k`.
     #[inline]
-    fn common_products(
-        &self,
-        present: std::ops::Range<usize>,
-        k: usize,
-        sums: &mut [Lanes<T>; SLOTS],
-    ) {
+    fn common_products(&self, present: std::ops::Range<usize>, k: usize, sums: &mut [Lanes<T>; SLOTS]) {
         let other_end = self.row_start[k + 1] as usize;
         let (mut mine, mut other) = (present.start, self.row_start[k] as usize);
         while mine < present.end && other < other_end {

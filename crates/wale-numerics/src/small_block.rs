@@ -6,10 +6,7 @@ use crate::block_matrix::{BLOCK, SLOTS};
 ///
 /// By symmetric sweeps: five divisions, no square root. A pivot counts as zero when it has fallen
 /// to `smallest_pivot` of its own diagonal entry; only the lower triangle's values matter.
-pub(crate) fn inverse_of_positive(
-    block: &[f64; BLOCK],
-    smallest_pivot: f64,
-) -> Option<[f64; BLOCK]> {
+pub(crate) fn inverse_of_positive(block: &[f64; BLOCK], smallest_pivot: f64) -> Option<[f64; BLOCK]> {
     let mut a = *block;
     for k in 0..SLOTS {
         let pivot = a[k * (SLOTS + 1)];
@@ -18,13 +15,7 @@ pub(crate) fn inverse_of_positive(
             return None;
         }
         let reciprocal = 1.0 / pivot;
-        let row: [f64; SLOTS] = std::array::from_fn(|j| {
-            if j < k {
-                a[k * SLOTS + j]
-            } else {
-                a[j * SLOTS + k]
-            }
-        });
+        let row: [f64; SLOTS] = std::array::from_fn(|j| if j < k { a[k * SLOTS + j] } else { a[j * SLOTS + k] });
         for i in 0..SLOTS {
             for j in 0..=i {
                 let value = match (i == k, j == k) {
@@ -57,9 +48,7 @@ mod tests {
         let inverse = inverse_of_positive(&block, 0.0).unwrap();
         for i in 0..SLOTS {
             for j in 0..SLOTS {
-                let entry: f64 = (0..SLOTS)
-                    .map(|l| inverse[i * SLOTS + l] * block[l * SLOTS + j])
-                    .sum();
+                let entry: f64 = (0..SLOTS).map(|l| inverse[i * SLOTS + l] * block[l * SLOTS + j]).sum();
                 let expected = if i == j { 1.0 } else { 0.0 };
                 assert!((entry - expected).abs() < 1e-12);
             }

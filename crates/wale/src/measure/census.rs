@@ -92,6 +92,7 @@ mod tests {
         };
         let fabric = FabricCard {
             loop_length: 16e-3,
+            path_ratio: 1.0,
             transition_length: 0.0,
             stitch_length: 2e-3,
             wale_spacing: 4.5e-3,
