@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 
 use wale::geometry::{Curve, CurveSettings, Solid, curves, solid_at};
 use wale::model::{Frame, Network};
-use wale::pattern::knit;
 use wale::record::{RecordError, RunReader};
 use wale::scene::{ErrorClass, Scene, SceneError, SceneFile};
-use wale::simulation::Simulation;
+use wale::simulation::{Simulation, Start};
 
 use crate::arguments::FrameChoice;
 use crate::estimate::Estimate;
@@ -59,7 +58,13 @@ impl OpenedScene {
     /// The fabric before it is placed.
     #[must_use]
     pub fn network(&self) -> Network {
-        network(&self.scene)
+        self.start().network
+    }
+
+    /// The fabric before it is placed, and what rest-shape compensation did to it.
+    #[must_use]
+    pub fn start(&self) -> Start {
+        start(&self.scene)
     }
 
     /// Sets up the simulation.
@@ -78,10 +83,11 @@ impl OpenedScene {
 }
 
 /// The fabric of a scene, in its colour.
-fn network(scene: &Scene) -> Network {
-    let mut network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
-    network.yarn_color.fill(scene.yarn_color);
-    network
+fn start(scene: &Scene) -> Start {
+    let compensate = scene.plan.simulation.rest_shape_compensation;
+    let mut start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, compensate);
+    start.network.yarn_color.fill(scene.yarn_color);
+    start
 }
 
 /// An error in a scene, with the code of its class.
@@ -118,7 +124,7 @@ impl OpenedRun {
         let frames = choice.among(count).ok_or_else(|| {
             Failure::new(Code::Usage, format_args!("{}: there are {count} frames, from 0 on", folder.display()))
         })?;
-        Ok(Self { network: network(&scene), reader, scene, frames })
+        Ok(Self { network: start(&scene).network, reader, scene, frames })
     }
 
     /// A frame, checked to be one of this fabric.

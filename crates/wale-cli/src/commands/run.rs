@@ -46,6 +46,13 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
             out.display()
         ));
     }
+    if simulation.plan().simulation.relax_first {
+        let report = simulation.relax();
+        if !arguments.manner.quiet {
+            let end = if report.converged { "at rest" } else { "not quite at rest" };
+            output::note(&format!("relaxed without friction in {} steps: {end}", report.steps));
+        }
+    }
     RunLoop { simulation, run, signals, quiet: arguments.manner.quiet }.go()
 }
 
