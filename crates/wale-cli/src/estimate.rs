@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::exit::{Code, Failure};
 use crate::output::bytes;
 
-/// Nodes of a loop inside a fabric [Cirio2017].
+/// Nodes of a loop inside a fabric \[Cirio2017\].
 const NODES_A_LOOP: f64 = 4.0;
 /// Nodes of a loop at an edge besides those: cast-on, bind-off and turns.
 const NODES_AN_EDGE_LOOP: f64 = 2.0;

@@ -162,10 +162,8 @@ impl Element<12> for Bending {
         let (a, b, c) = (k * second, -k * first / rest, 2.0 * k * f / (rest * rest));
         let (a, b, c) = clamp2(a, b, c);
         let mut g = [0.0; 12];
-        for i in 0..3 {
-            g[i] = angle.gradient[0][i];
-            g[4 + i] = angle.gradient[1][i];
-            g[8 + i] = angle.gradient[2][i];
+        for (slots, by_node) in g.chunks_exact_mut(4).zip(&angle.gradient) {
+            slots[..3].copy_from_slice(by_node);
         }
         local.add_square(a, &g);
         for i in 0..12 {
