@@ -36,12 +36,7 @@ fn rounds_of(rows: usize) -> usize {
 
 fn report(name: &str, seconds: f64, bytes: usize, triad: f64) {
     let speed = bytes as f64 / seconds;
-    println!(
-        "{name:<28} {:9.3} ms  {:6.1} GB/s  {:5.2} of triad",
-        seconds * 1e3,
-        speed / 1e9,
-        speed / triad
-    );
+    println!("{name:<28} {:9.3} ms  {:6.1} GB/s  {:5.2} of triad", seconds * 1e3, speed / 1e9, speed / triad);
 }
 
 fn incomplete(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad: f64) {
@@ -70,11 +65,7 @@ fn incomplete(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad
 
 fn kernels(wales: usize, courses: usize) {
     let start = Instant::now();
-    let Swatch {
-        matrix,
-        coordinates,
-        free,
-    } = swatch(wales, courses);
+    let Swatch { matrix, coordinates, free } = swatch(wales, courses);
     let rows = matrix.rows();
     let rounds = rounds_of(rows);
     let pattern = matrix.pattern();
@@ -161,8 +152,7 @@ fn kernels(wales: usize, courses: usize) {
 
     if rows <= 25_000 {
         let start = Instant::now();
-        let mut direct =
-            SparseCholesky::new(Arc::clone(pattern), &free, BlockOrder::MinimumDegree).unwrap();
+        let mut direct = SparseCholesky::new(Arc::clone(pattern), &free, BlockOrder::MinimumDegree).unwrap();
         println!(
             "direct: symbolic {:.0} ms, {:.1} values an unknown",
             start.elapsed().as_secs_f64() * 1e3,
@@ -180,14 +170,9 @@ fn kernels(wales: usize, courses: usize) {
 }
 
 fn main() {
-    let sizes: Vec<usize> = std::env::args()
-        .skip(1)
-        .filter_map(|s| s.parse().ok())
-        .collect();
+    let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|s| s.parse().ok()).collect();
     match sizes[..] {
         [wales, courses] => kernels(wales, courses),
-        _ => [[30, 30], [70, 70], [112, 112], [237, 237]]
-            .iter()
-            .for_each(|&[wales, courses]| kernels(wales, courses)),
+        _ => [[30, 30], [70, 70], [112, 112], [237, 237]].iter().for_each(|&[wales, courses]| kernels(wales, courses)),
     }
 }

@@ -84,29 +84,17 @@ impl<T: Scalar> BlockMatrix<T> {
 
     /// Sets every number to zero.
     pub fn clear(&mut self) {
-        self.values
-            .par_chunks_mut(ROWS_PER_PIECE * BLOCK)
-            .for_each(|piece| piece.fill(T::ZERO));
+        self.values.par_chunks_mut(ROWS_PER_PIECE * BLOCK).for_each(|piece| piece.fill(T::ZERO));
     }
 
     /// Cuts the matrix into the row ranges between consecutive bounds.
     ///
     /// `bounds` ascends, starts at 0 and ends at the number of rows.
-    pub fn split_rows<'a>(
-        &'a mut self,
-        bounds: &'a [usize],
-    ) -> impl Iterator<Item = RowChunk<'a, T>> + use<'a, T> {
-        let mut rest = RowChunk {
-            pattern: &self.pattern,
-            rows: 0..self.pattern.rows(),
-            values: self.values.as_mut_slice(),
-        };
+    pub fn split_rows<'a>(&'a mut self, bounds: &'a [usize]) -> impl Iterator<Item = RowChunk<'a, T>> + use<'a, T> {
+        let mut rest =
+            RowChunk { pattern: &self.pattern, rows: 0..self.pattern.rows(), values: self.values.as_mut_slice() };
         bounds.windows(2).map(move |pair| {
-            let empty = RowChunk {
-                pattern: rest.pattern,
-                rows: 0..0,
-                values: &mut [],
-            };
+            let empty = RowChunk { pattern: rest.pattern, rows: 0..0, values: &mut [] };
             let (head, tail) = std::mem::replace(&mut rest, empty).split_at(pair[1]);
             rest = tail;
             head
@@ -127,11 +115,7 @@ impl<T: Scalar> BlockMatrix<T> {
         fill: impl Fn(&mut S, RowChunk<'_, T>) + Sync,
     ) {
         assert_eq!(bounds.len(), companions.len() + 1);
-        let chunk = RowChunk {
-            pattern: &self.pattern,
-            rows: 0..self.pattern.rows(),
-            values: &mut self.values,
-        };
+        let chunk = RowChunk { pattern: &self.pattern, rows: 0..self.pattern.rows(), values: &mut self.values };
         halve(bounds, companions, chunk, &fill);
     }
 
@@ -203,11 +187,7 @@ impl<T: Scalar> BlockMatrix<T> {
             }
         };
         let bounds = [0, pattern.rows()];
-        let everything = RowChunk {
-            pattern: &pattern,
-            rows: 0..bounds[1],
-            values: &mut self.values,
-        };
+        let everything = RowChunk { pattern: &pattern, rows: 0..bounds[1], values: &mut self.values };
         everything.for_each_row(&fix);
     }
 
@@ -218,14 +198,11 @@ impl<T: Scalar> BlockMatrix<T> {
     pub fn copy_from<U: Scalar>(&mut self, other: &BlockMatrix<U>) {
         assert_eq!(self.values.len(), other.values.len());
         let length = ROWS_PER_PIECE * BLOCK;
-        self.values
-            .par_chunks_mut(length)
-            .zip(other.values.par_chunks(length))
-            .for_each(|(to, from)| {
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to = T::from_f64(from.to_f64());
-                }
-            });
+        self.values.par_chunks_mut(length).zip(other.values.par_chunks(length)).for_each(|(to, from)| {
+            for (to, from) in to.iter_mut().zip(from) {
+                *to = T::from_f64(from.to_f64());
+            }
+        });
     }
 }
 
@@ -266,10 +243,7 @@ fn halve<T: Scalar, S: Send>(
             let middle = companions.len() / 2;
             let (left, right) = companions.split_at_mut(middle);
             let (head, tail) = chunk.split_at(bounds[middle]);
-            rayon::join(
-                || halve(&bounds[..=middle], left, head, fill),
-                || halve(&bounds[middle..], right, tail, fill),
-            );
+            rayon::join(|| halve(&bounds[..=middle], left, head, fill), || halve(&bounds[middle..], right, tail, fill));
         }
     }
 }
@@ -293,11 +267,7 @@ impl<'a, T: Scalar> RowChunk<'a, T> {
     /// If the row is outside this chunk or the two blocks do not meet in the pattern.
     #[inline]
     pub fn block_mut(&mut self, row: usize, column: usize) -> &mut [T; BLOCK] {
-        assert!(
-            self.rows.contains(&row),
-            "row {row} is not in {:?}",
-            self.rows
-        );
+        assert!(self.rows.contains(&row), "row {row} is not in {:?}", self.rows);
         let Some(position) = self.pattern.position(row, column) else {
             panic!("blocks {row} and {column} do not meet in the pattern");
         };
@@ -311,11 +281,7 @@ impl<'a, T: Scalar> RowChunk<'a, T> {
     /// If the row is outside this chunk.
     #[inline]
     pub fn row_mut(&mut self, row: usize) -> (&'a [u32], &mut [[T; BLOCK]]) {
-        assert!(
-            self.rows.contains(&row),
-            "row {row} is not in {:?}",
-            self.rows
-        );
+        assert!(self.rows.contains(&row), "row {row} is not in {:?}", self.rows);
         let start = self.pattern.row_start();
         let base = start[self.rows.start];
         let blocks = &mut self.values.as_chunks_mut().0[start[row] - base..start[row + 1] - base];
@@ -332,15 +298,8 @@ impl<'a, T: Scalar> RowChunk<'a, T> {
         let start = self.pattern.row_start();
         let length = (start[row] - start[self.rows.start]) * BLOCK;
         let (head, tail) = self.values.split_at_mut(length);
-        let chunk = |rows, values| Self {
-            pattern: self.pattern,
-            rows,
-            values,
-        };
-        (
-            chunk(self.rows.start..row, head),
-            chunk(row..self.rows.end, tail),
-        )
+        let chunk = |rows, values| Self { pattern: self.pattern, rows, values };
+        (chunk(self.rows.start..row, head), chunk(row..self.rows.end, tail))
     }
 
     /// Visits every row, long chunks in parallel.

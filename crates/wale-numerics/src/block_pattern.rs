@@ -21,10 +21,7 @@ impl BlockPattern {
         let count = u32::try_from(rows).expect("at most u32::MAX block rows");
         let mut entries: Vec<u64> = (0..u64::from(count)).map(|i| (i << 32) | i).collect();
         for (i, j) in pairs {
-            assert!(
-                i < count && j < count,
-                "block pair ({i}, {j}) outside {rows} rows"
-            );
+            assert!(i < count && j < count, "block pair ({i}, {j}) outside {rows} rows");
             if i != j {
                 let (i, j) = (u64::from(i), u64::from(j));
                 entries.push((i << 32) | j);
@@ -50,11 +47,7 @@ impl BlockPattern {
         if rows > 0 {
             row_start.push(entries.len());
         }
-        Self {
-            row_start,
-            columns,
-            diagonal,
-        }
+        Self { row_start, columns, diagonal }
     }
 
     /// Number of block rows (and columns).
@@ -116,10 +109,7 @@ mod tests {
         assert_eq!(pattern.row(3), [1, 3]);
         assert_eq!(pattern.row(4), [0, 4]);
         for row in 0..5 {
-            assert_eq!(
-                pattern.position(row, row),
-                Some(pattern.diagonal_position(row))
-            );
+            assert_eq!(pattern.position(row, row), Some(pattern.diagonal_position(row)));
         }
         assert_eq!(pattern.position(2, 3), None);
     }

@@ -65,26 +65,14 @@ impl CoarseSpace {
     ///
     /// # Panics
     /// If the prolongation or the flags are of another number of blocks.
-    pub fn new(
-        pattern: Arc<BlockPattern>,
-        prolongation: Prolongation,
-        free: &[bool],
-    ) -> Result<Self, CholeskyError> {
+    pub fn new(pattern: Arc<BlockPattern>, prolongation: Prolongation, free: &[bool]) -> Result<Self, CholeskyError> {
         let rows = pattern.rows();
         assert!(prolongation.corners.len() == rows && free.len() == rows * SLOTS);
-        let free: Vec<u8> = free
-            .as_chunks::<SLOTS>()
-            .0
-            .iter()
-            .map(|f| (0..AXES).map(|axis| u8::from(f[axis]) << axis).sum())
-            .collect();
+        let free: Vec<u8> =
+            free.as_chunks::<SLOTS>().0.iter().map(|f| (0..AXES).map(|axis| u8::from(f[axis]) << axis).sum()).collect();
         let coarse_pattern = Arc::new(coarse_pattern(&pattern, &prolongation));
         let supported = supported_slots(&prolongation, &free);
-        let cholesky = SparseCholesky::new(
-            Arc::clone(&coarse_pattern),
-            &supported,
-            BlockOrder::MinimumDegree,
-        )?;
+        let cholesky = SparseCholesky::new(Arc::clone(&coarse_pattern), &supported, BlockOrder::MinimumDegree)?;
         let rows_per_piece = rows.div_ceil((rows / 4096).clamp(1, 32)).max(1);
         let pieces = (0..rows)
             .step_by(rows_per_piece)
@@ -141,9 +129,7 @@ impl CoarseSpace {
         assert_eq!(matrix.pattern().block_count(), self.pattern.block_count());
         let (prolongation, free) = (&self.prolongation, &self.free);
         let coarse_pattern = Arc::clone(self.matrix.pattern());
-        self.pieces
-            .par_iter_mut()
-            .for_each(|piece| piece.project(matrix, prolongation, free, &coarse_pattern));
+        self.pieces.par_iter_mut().for_each(|piece| piece.project(matrix, prolongation, free, &coarse_pattern));
         self.matrix.values.fill(0.0);
         for piece in &self.pieces {
             let start = coarse_pattern.row_start()[piece.coarse.start];
@@ -163,9 +149,7 @@ impl Preconditioner for CoarseSpace {
     fn add(&mut self, residual: &[f64], out: &mut [f64]) {
         assert!(residual.len() == self.free.len() * SLOTS && out.len() == residual.len());
         let (prolongation, free) = (&self.prolongation, &self.free);
-        self.pieces
-            .par_iter_mut()
-            .for_each(|piece| piece.restrict(residual, prolongation, free));
+        self.pieces.par_iter_mut().for_each(|piece| piece.restrict(residual, prolongation, free));
         self.solution.fill(0.0);
         let coarse = self.solution.as_chunks_mut::<SLOTS>().0;
         for piece in &self.pieces {
@@ -177,20 +161,18 @@ impl Preconditioner for CoarseSpace {
         }
         self.cholesky.solve_in_place(&mut self.solution);
         let coarse = self.solution.as_chunks::<SLOTS>().0;
-        out.par_chunks_mut(self.rows_per_piece * SLOTS)
-            .zip(&self.pieces)
-            .for_each(|(out, piece)| {
-                let blocks = out.as_chunks_mut::<SLOTS>().0;
-                for (out, row) in blocks.iter_mut().zip(piece.rows.clone()) {
-                    let mask = axis_mask(free[row]);
-                    let (corners, weights) = prolongation.weights_of(row);
-                    for (&corner, &weight) in corners.iter().zip(weights) {
-                        for axis in 0..AXES {
-                            out[axis] += weight * mask[axis] * coarse[corner as usize][axis];
-                        }
+        out.par_chunks_mut(self.rows_per_piece * SLOTS).zip(&self.pieces).for_each(|(out, piece)| {
+            let blocks = out.as_chunks_mut::<SLOTS>().0;
+            for (out, row) in blocks.iter_mut().zip(piece.rows.clone()) {
+                let mask = axis_mask(free[row]);
+                let (corners, weights) = prolongation.weights_of(row);
+                for (&corner, &weight) in corners.iter().zip(weights) {
+                    for axis in 0..AXES {
+                        out[axis] += weight * mask[axis] * coarse[corner as usize][axis];
                     }
                 }
-            });
+            }
+        });
     }
 }
 
@@ -198,12 +180,7 @@ impl Piece {
     fn new(rows: Range<usize>, prolongation: &Prolongation, coarse_pattern: &BlockPattern) -> Self {
         let touched = prolongation.corners[rows.clone()].as_flattened();
         let least = touched.iter().copied().min().unwrap_or(0) as usize;
-        let coarse = least
-            ..touched
-                .iter()
-                .copied()
-                .max()
-                .map_or(least, |m| m as usize + 1);
+        let coarse = least..touched.iter().copied().max().map_or(least, |m| m as usize + 1);
         let start = coarse_pattern.row_start();
         Self {
             rows,
@@ -267,13 +244,7 @@ impl Piece {
 
 impl RowSums {
     /// Sums the blocks of one row, each times the weights of its column.
-    fn collect(
-        &mut self,
-        matrix: &BlockMatrix,
-        row: usize,
-        prolongation: &Prolongation,
-        free: &[u8],
-    ) {
+    fn collect(&mut self, matrix: &BlockMatrix, row: usize, prolongation: &Prolongation, free: &[u8]) {
         self.nodes.clear();
         self.sums.clear();
         let pattern = matrix.pattern();
@@ -328,10 +299,7 @@ fn coarse_pattern(pattern: &BlockPattern, prolongation: &Prolongation) -> BlockP
     let mut last = None;
     for row in 0..pattern.rows() {
         for &column in pattern.row(row) {
-            let cells = (
-                &prolongation.corners[row],
-                &prolongation.corners[column as usize],
-            );
+            let cells = (&prolongation.corners[row], &prolongation.corners[column as usize]);
             if last == Some(cells) {
                 continue;
             }
@@ -346,10 +314,7 @@ fn coarse_pattern(pattern: &BlockPattern, prolongation: &Prolongation) -> BlockP
             }
         }
     }
-    let pairs = meets
-        .iter()
-        .enumerate()
-        .flat_map(|(a, others)| others.iter().map(move |&b| (a as u32, b)));
+    let pairs = meets.iter().enumerate().flat_map(|(a, others)| others.iter().map(move |&b| (a as u32, b)));
     BlockPattern::from_pairs(prolongation.coarse_nodes, pairs)
 }
 

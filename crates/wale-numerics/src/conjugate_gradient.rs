@@ -35,11 +35,7 @@ pub struct ConjugateGradientSettings {
 impl Default for ConjugateGradientSettings {
     /// Loose, as inside a Newton iteration.
     fn default() -> Self {
-        Self {
-            max_iterations: 100,
-            relative_tolerance: 0.1,
-            absolute_tolerance: 0.0,
-        }
+        Self { max_iterations: 100, relative_tolerance: 0.1, absolute_tolerance: 0.0 }
     }
 }
 
@@ -137,8 +133,7 @@ impl ConjugateGradient {
         vector::copy(&self.preconditioned, &mut self.direction);
         let mut energy = vector::dot(&self.residual, &self.preconditioned);
         let initial_residual = energy.max(0.0).sqrt();
-        let goal =
-            (settings.relative_tolerance * initial_residual).max(settings.absolute_tolerance);
+        let goal = (settings.relative_tolerance * initial_residual).max(settings.absolute_tolerance);
         let mut iterations = 0;
         let end = loop {
             if !(energy >= 0.0 && energy.is_finite()) {
@@ -170,11 +165,6 @@ impl ConjugateGradient {
             vector::scale_and_add(&mut self.direction, energy / previous, &self.preconditioned);
             iterations += 1;
         };
-        ConjugateGradientReport {
-            iterations,
-            end,
-            initial_residual,
-            final_residual: energy.max(0.0).sqrt(),
-        }
+        ConjugateGradientReport { iterations, end, initial_residual, final_residual: energy.max(0.0).sqrt() }
     }
 }

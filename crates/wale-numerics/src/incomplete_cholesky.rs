@@ -123,12 +123,7 @@ impl IncompleteCholesky {
             .step_by(rows_per_domain)
             .map(|first| Domain::new(&pattern, first, rows.min(first + rows_per_domain)))
             .collect();
-        Self {
-            pattern,
-            settings,
-            rows_per_domain,
-            domains,
-        }
+        Self { pattern, settings, rows_per_domain, domains }
     }
 
     /// Factors a matrix, from which fixed slots have been taken out
@@ -141,21 +136,13 @@ impl IncompleteCholesky {
     ///
     /// # Panics
     /// If the matrix is over another pattern.
-    pub fn factor(
-        &mut self,
-        matrix: &BlockMatrix,
-    ) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
+    pub fn factor(&mut self, matrix: &BlockMatrix) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
         assert_eq!(matrix.pattern().block_count(), self.pattern.block_count());
         let settings = &self.settings;
-        self.domains
-            .par_iter_mut()
-            .for_each(|domain| domain.factor(matrix, settings));
+        self.domains.par_iter_mut().for_each(|domain| domain.factor(matrix, settings));
         let first_shift = self.settings.shifts.first().copied().unwrap_or(0.0);
-        let mut report = IncompleteCholeskyReport {
-            largest_shift: 0.0,
-            shifted_domains: 0,
-            domains: self.domains.len(),
-        };
+        let mut report =
+            IncompleteCholeskyReport { largest_shift: 0.0, shifted_domains: 0, domains: self.domains.len() };
         for domain in &self.domains {
             match domain.outcome {
                 Ok(shift) => {

@@ -2,9 +2,12 @@
 
 pub mod block_matrix;
 pub mod block_pattern;
+pub mod check;
 pub mod coarse_space;
 pub mod conjugate_gradient;
+pub mod dense;
 pub mod incomplete_cholesky;
+pub mod jet;
 pub mod preconditioner;
 pub mod prolongation;
 pub mod scalar;

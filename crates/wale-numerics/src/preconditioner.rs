@@ -63,9 +63,7 @@ const ROWS_PER_PIECE: usize = 2048;
 impl BlockJacobi {
     /// Memory for a matrix of `rows` block rows.
     pub fn new(rows: usize) -> Self {
-        Self {
-            inverse: vec![[0.0; BLOCK]; rows],
-        }
+        Self { inverse: vec![[0.0; BLOCK]; rows] }
     }
 
     /// Inverts the diagonal blocks.
@@ -88,14 +86,11 @@ impl BlockJacobi {
             });
             *inverse = wide.map(|v| v as f32);
         };
-        self.inverse
-            .par_chunks_mut(ROWS_PER_PIECE)
-            .enumerate()
-            .for_each(|(piece, inverses)| {
-                for (k, inverse) in inverses.iter_mut().enumerate() {
-                    invert(piece * ROWS_PER_PIECE + k, inverse);
-                }
-            });
+        self.inverse.par_chunks_mut(ROWS_PER_PIECE).enumerate().for_each(|(piece, inverses)| {
+            for (k, inverse) in inverses.iter_mut().enumerate() {
+                invert(piece * ROWS_PER_PIECE + k, inverse);
+            }
+        });
     }
 }
 

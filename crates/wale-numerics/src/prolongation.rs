@@ -17,11 +17,7 @@ impl Prolongation {
         assert_eq!(corners.len(), weights.len());
         let inside = |corner: &u32| (*corner as usize) < coarse_nodes;
         assert!(corners.as_flattened().iter().all(inside));
-        Self {
-            coarse_nodes,
-            corners,
-            weights,
-        }
+        Self { coarse_nodes, corners, weights }
     }
 
     /// Bilinear hats about `spacing` apart over blocks at planar `coordinates`, in grid units
@@ -35,14 +31,8 @@ impl Prolongation {
     pub fn bilinear(coordinates: &[[f64; 2]], spacing: f64) -> Self {
         assert!(spacing > 0.0 && coordinates.as_flattened().iter().all(|v| v.is_finite()));
         let axis = |k: usize| {
-            let least = coordinates
-                .iter()
-                .map(|c| c[k])
-                .fold(f64::INFINITY, f64::min);
-            let most = coordinates
-                .iter()
-                .map(|c| c[k])
-                .fold(f64::NEG_INFINITY, f64::max);
+            let least = coordinates.iter().map(|c| c[k]).fold(f64::INFINITY, f64::min);
+            let most = coordinates.iter().map(|c| c[k]).fold(f64::NEG_INFINITY, f64::max);
             let extent = (most - least).max(0.0);
             if extent < 1e-9 * spacing {
                 return (least, 1.0, 0);
@@ -64,12 +54,7 @@ impl Prolongation {
             let (left, right, s) = locate(coordinate[0], axes[0]);
             let (low, high, t) = locate(coordinate[1], axes[1]);
             let node = |across: usize, up: usize| (up * nodes_across + across) as u32;
-            corners.push([
-                node(left, low),
-                node(right, low),
-                node(left, high),
-                node(right, high),
-            ]);
+            corners.push([node(left, low), node(right, low), node(left, high), node(right, high)]);
             weights.push([(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t]);
         }
         Self::new(nodes_across * (axes[1].2 + 1), corners, weights)
@@ -92,9 +77,8 @@ mod tests {
 
     #[test]
     fn hats_sum_to_one_and_carry_linear_motions_exactly() {
-        let coordinates: Vec<[f64; 2]> = (0..200)
-            .map(|i| [(i * 37 % 101) as f64 * 0.31, (i * 53 % 89) as f64 * 0.17])
-            .collect();
+        let coordinates: Vec<[f64; 2]> =
+            (0..200).map(|i| [(i * 37 % 101) as f64 * 0.31, (i * 53 % 89) as f64 * 0.17]).collect();
         let hats = Prolongation::bilinear(&coordinates, 6.0);
         // Extents 31 and 15 units in cells of about six.
         assert_eq!(hats.coarse_nodes(), 6 * 3);

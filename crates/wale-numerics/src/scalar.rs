@@ -52,11 +52,7 @@ macro_rules! scalar {
             }
             #[inline(always)]
             fn fused(self, factor: Self, summand: Self) -> Self {
-                if FUSED {
-                    self.mul_add(factor, summand)
-                } else {
-                    self * factor + summand
-                }
+                if FUSED { self.mul_add(factor, summand) } else { self * factor + summand }
             }
             #[inline(always)]
             fn root(self) -> Self {

@@ -86,9 +86,7 @@ mod tests {
         let inverse = inverse_of_positive(&block, 0.0).unwrap();
         for i in 0..SLOTS {
             for j in 0..SLOTS {
-                let entry: f64 = (0..SLOTS)
-                    .map(|l| inverse[i * SLOTS + l] * block[l * SLOTS + j])
-                    .sum();
+                let entry: f64 = (0..SLOTS).map(|l| inverse[i * SLOTS + l] * block[l * SLOTS + j]).sum();
                 let expected = if i == j { 1.0 } else { 0.0 };
                 assert!((entry - expected).abs() < 1e-12);
             }

@@ -10,8 +10,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
-    factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMat, SymbolicSparseColMat, SymbolicSparseColMatRef};
@@ -86,11 +85,7 @@ impl SparseCholesky {
     ///
     /// # Panics
     /// If `free` has not one flag a slot, or a given order is not a permutation of the blocks.
-    pub fn new(
-        pattern: Arc<BlockPattern>,
-        free: &[bool],
-        order: BlockOrder<'_>,
-    ) -> Result<Self, CholeskyError> {
+    pub fn new(pattern: Arc<BlockPattern>, free: &[bool], order: BlockOrder<'_>) -> Result<Self, CholeskyError> {
         assert_eq!(free.len(), pattern.rows() * SLOTS);
         let (slots, slot_start) = unknown_slots(free);
         let unknowns = slots.len();
@@ -116,12 +111,9 @@ impl SparseCholesky {
         let request = symbolic
             .factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default())
             .or(symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
-        let memory =
-            MemBuffer::try_new(request).map_err(|_| CholeskyError::TooLarge { unknowns })?;
+        let memory = MemBuffer::try_new(request).map_err(|_| CholeskyError::TooLarge { unknowns })?;
         let mut factor = Vec::new();
-        factor
-            .try_reserve_exact(symbolic.len_val())
-            .map_err(|_| CholeskyError::TooLarge { unknowns })?;
+        factor.try_reserve_exact(symbolic.len_val()).map_err(|_| CholeskyError::TooLarge { unknowns })?;
         factor.resize(symbolic.len_val(), 0.0);
         Ok(Self {
             pattern,
@@ -155,11 +147,7 @@ impl SparseCholesky {
     ///
     /// # Panics
     /// If the matrix is over another pattern.
-    pub fn factor(
-        &mut self,
-        matrix: &BlockMatrix,
-        relative_shift: f64,
-    ) -> Result<(), CholeskyError> {
+    pub fn factor(&mut self, matrix: &BlockMatrix, relative_shift: f64) -> Result<(), CholeskyError> {
         self.factored = false;
         self.gather(matrix, 1.0 + relative_shift)?;
         let unknowns = self.unknowns();
@@ -174,8 +162,9 @@ impl SparseCholesky {
                     MemStack::new(&mut self.memory),
                     Spec::default(),
                 )
-                .map_err(|LltError::NonPositivePivot { index: pivot }| {
-                    CholeskyError::NotPositiveDefinite { pivot, unknowns }
+                .map_err(|LltError::NonPositivePivot { index: pivot }| CholeskyError::NotPositiveDefinite {
+                    pivot,
+                    unknowns,
                 })?;
         }
         self.factored = true;
@@ -233,11 +222,7 @@ impl SparseCholesky {
                 }
             }
         }
-        if finite {
-            Ok(())
-        } else {
-            Err(CholeskyError::NotFinite)
-        }
+        if finite { Ok(()) } else { Err(CholeskyError::NotFinite) }
     }
 }
 
@@ -263,22 +248,14 @@ fn slots_of<'a>(slots: &'a [u32], start: &[u32], block: usize) -> &'a [u32] {
 /// Approximate minimum degree on the graph of blocks.
 fn minimum_degree(pattern: &BlockPattern) -> Result<Vec<u32>, CholeskyError> {
     let rows = pattern.rows();
-    let too_large = CholeskyError::TooLarge {
-        unknowns: rows * SLOTS,
-    };
+    let too_large = CholeskyError::TooLarge { unknowns: rows * SLOTS };
     let start: Vec<u32> = pattern.row_start().iter().map(|&s| s as u32).collect();
     let graph = SymbolicSparseColMatRef::new_checked(rows, rows, &start, None, pattern.columns());
     let (mut forward, mut inverse) = (vec![0; rows], vec![0; rows]);
     let request = amd::order_scratch::<u32>(rows, pattern.block_count());
     let mut memory = MemBuffer::try_new(request).map_err(|_| too_large.clone())?;
-    amd::order(
-        &mut forward,
-        &mut inverse,
-        graph,
-        amd::Control::default(),
-        MemStack::new(&mut memory),
-    )
-    .map_err(|_| too_large)?;
+    amd::order(&mut forward, &mut inverse, graph, amd::Control::default(), MemStack::new(&mut memory))
+        .map_err(|_| too_large)?;
     Ok(forward)
 }
 
@@ -301,11 +278,7 @@ fn expand_order(order: &[u32], slot_start: &[u32]) -> (Vec<u32>, Vec<u32>) {
 ///
 /// A column below the diagonal is, by symmetry, a row right of it, so one walk along the rows of
 /// the block pattern gives the columns in order.
-fn lower_triangle(
-    pattern: &BlockPattern,
-    slots: &[u32],
-    slot_start: &[u32],
-) -> SparseColMat<u32, f64> {
+fn lower_triangle(pattern: &BlockPattern, slots: &[u32], slot_start: &[u32]) -> SparseColMat<u32, f64> {
     let mut column_start = vec![0];
     let mut row_index = Vec::new();
     for row in 0..pattern.rows() {
@@ -320,7 +293,6 @@ fn lower_triangle(
     }
     let values = vec![0.0; row_index.len()];
     let unknowns = slots.len();
-    let symbolic =
-        SymbolicSparseColMat::new_checked(unknowns, unknowns, column_start, None, row_index);
+    let symbolic = SymbolicSparseColMat::new_checked(unknowns, unknowns, column_start, None, row_index);
     SparseColMat::new(symbolic, values)
 }

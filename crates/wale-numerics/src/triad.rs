@@ -20,14 +20,11 @@ pub fn triad_bandwidth(length: usize, rounds: usize) -> f64 {
     for round in 0..=rounds {
         let scale = round as f64;
         let start = Instant::now();
-        a.par_chunks_mut(PIECE)
-            .zip(b.par_chunks(PIECE))
-            .zip(c.par_chunks(PIECE))
-            .for_each(|((a, b), c)| {
-                for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
-                    *a = b + scale * c;
-                }
-            });
+        a.par_chunks_mut(PIECE).zip(b.par_chunks(PIECE)).zip(c.par_chunks(PIECE)).for_each(|((a, b), c)| {
+            for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
+                *a = b + scale * c;
+            }
+        });
         let seconds = start.elapsed().as_secs_f64();
         // The first round only brings the pages in. A wrong sum would mean the work was skipped.
         let done = a.first().is_none_or(|&first| first == 1.0 + 2.0 * scale);

@@ -34,21 +34,13 @@ pub fn norm(a: &[f64]) -> f64 {
 pub fn largest_magnitude(a: &[f64]) -> f64 {
     if a.len() <= PIECE {
         let wider = |m: f64, v: &f64| {
-            if v.abs() > m || v.is_nan() {
-                v.abs()
-            } else {
-                m
-            }
+            if v.abs() > m || v.is_nan() { v.abs() } else { m }
         };
         return a.iter().fold(0.0, wider);
     }
     let (head, tail) = a.split_at(middle(a.len()));
     let (left, right) = rayon::join(|| largest_magnitude(head), || largest_magnitude(tail));
-    if left > right || left.is_nan() {
-        left
-    } else {
-        right
-    }
+    if left > right || left.is_nan() { left } else { right }
 }
 
 /// Sets every number.
@@ -90,9 +82,7 @@ pub fn keep_free(y: &mut [f64], free: &[bool]) {
     if y.len() <= PIECE {
         return keep(y, free);
     }
-    y.par_chunks_mut(PIECE)
-        .zip(free.par_chunks(PIECE))
-        .for_each(|(y, free)| keep(y, free));
+    y.par_chunks_mut(PIECE).zip(free.par_chunks(PIECE)).for_each(|(y, free)| keep(y, free));
 }
 
 /// Where a vector of more than one piece is halved: always between two pieces.
@@ -114,11 +104,7 @@ fn dot_of_piece(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Calls `update` for every piece of `y` with the same piece of each input.
-fn each_piece<const N: usize>(
-    y: &mut [f64],
-    inputs: [&[f64]; N],
-    update: impl Fn(&mut [f64], [&[f64]; N]) + Sync,
-) {
+fn each_piece<const N: usize>(y: &mut [f64], inputs: [&[f64]; N], update: impl Fn(&mut [f64], [&[f64]; N]) + Sync) {
     for input in inputs {
         assert_eq!(y.len(), input.len());
     }
@@ -136,9 +122,7 @@ mod tests {
     use super::*;
 
     fn ramp(length: usize, factor: f64) -> Vec<f64> {
-        (0..length)
-            .map(|i| factor * (i % 101) as f64 - 3.0)
-            .collect()
+        (0..length).map(|i| factor * (i % 101) as f64 - 3.0).collect()
     }
 
     #[test]

@@ -76,10 +76,7 @@ fn fixed_slots_leave_the_system() {
     for row in 0..rows {
         for &column in matrix.pattern().row(row) {
             let column = column as usize;
-            let (new, old) = (
-                matrix.block(row, column).unwrap(),
-                before.block(row, column).unwrap(),
-            );
+            let (new, old) = (matrix.block(row, column).unwrap(), before.block(row, column).unwrap());
             for k in 0..BLOCK {
                 let (r, c) = (row * SLOTS + k / SLOTS, column * SLOTS + k % SLOTS);
                 let expected = match (free[r] && free[c], r == c) {

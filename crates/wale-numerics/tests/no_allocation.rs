@@ -14,11 +14,7 @@ use wale_numerics::sparse_cholesky::{BlockOrder, SparseCholesky};
 
 #[test]
 fn warm_calls_allocate_nothing() {
-    let Swatch {
-        matrix,
-        coordinates,
-        free,
-    } = swatch(50, 90);
+    let Swatch { matrix, coordinates, free } = swatch(50, 90);
     let pattern = matrix.pattern();
     let b = {
         let mut b = Sequence(1).vector(matrix.dimension());
@@ -32,20 +28,13 @@ fn warm_calls_allocate_nothing() {
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &free).unwrap();
     let small = swatch(10, 20);
     let small_pattern = Arc::clone(small.matrix.pattern());
-    let mut cholesky =
-        SparseCholesky::new(small_pattern, &small.free, BlockOrder::MinimumDegree).unwrap();
+    let mut cholesky = SparseCholesky::new(small_pattern, &small.free, BlockOrder::MinimumDegree).unwrap();
     let mut small_solution = vec![1.0; small.matrix.dimension()];
     let mut gradient = ConjugateGradient::new(b.len());
     let mut x = vec![0.0; b.len()];
     let mut y = vec![0.0; b.len()];
-    let goal = ConjugateGradientSettings {
-        relative_tolerance: 1e-2,
-        ..Default::default()
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap();
+    let goal = ConjugateGradientSettings { relative_tolerance: 1e-2, ..Default::default() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let counts = pool.install(|| {
         let mut round = || {
             let product = measure(|| matrix.multiply(&b, &mut y));

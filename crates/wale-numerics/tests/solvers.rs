@@ -16,11 +16,7 @@ use wale_numerics::prolongation::Prolongation;
 use wale_numerics::sparse_cholesky::{BlockOrder, SparseCholesky};
 
 fn settings(tolerance: f64) -> ConjugateGradientSettings {
-    ConjugateGradientSettings {
-        max_iterations: 3000,
-        relative_tolerance: tolerance,
-        absolute_tolerance: 0.0,
-    }
+    ConjugateGradientSettings { max_iterations: 3000, relative_tolerance: tolerance, absolute_tolerance: 0.0 }
 }
 
 fn direct(matrix: &BlockMatrix, free: &[bool], b: &[f64]) -> Vec<f64> {
@@ -40,11 +36,7 @@ fn right_hand_side(free: &[bool], seed: u64) -> Vec<f64> {
 
 #[test]
 fn all_preconditioners_lead_to_the_direct_solution() {
-    let Swatch {
-        matrix,
-        coordinates,
-        free,
-    } = swatch(12, 20);
+    let Swatch { matrix, coordinates, free } = swatch(12, 20);
     let b = right_hand_side(&free, 1);
     let expected = direct(&matrix, &free, &b);
     let pattern = matrix.pattern();
@@ -105,15 +97,9 @@ fn conjugate_gradients_solve_a_random_matrix() {
     assert_eq!(report.end, ConjugateGradientEnd::Converged);
     assert!(largest_difference(&x, &expected) < 1e-8 * largest(&expected));
     // Started from the solution there is nothing left to do.
-    let goal = ConjugateGradientSettings {
-        absolute_tolerance: 1e-6,
-        ..settings(0.0)
-    };
+    let goal = ConjugateGradientSettings { absolute_tolerance: 1e-6, ..settings(0.0) };
     let report = gradient.solve(&matrix, &mut jacobi, &b, &mut x, None, &goal);
-    assert_eq!(
-        (report.iterations, report.end),
-        (0, ConjugateGradientEnd::Converged)
-    );
+    assert_eq!((report.iterations, report.end), (0, ConjugateGradientEnd::Converged));
 }
 
 #[test]
@@ -130,14 +116,7 @@ fn a_filter_does_what_taking_slots_out_does() {
         *b = if free { *b } else { 1e9 };
     }
     let mut x = vec![0.0; b.len()];
-    let report = gradient.solve(
-        &matrix,
-        &mut jacobi,
-        &b,
-        &mut x,
-        Some(&free),
-        &settings(1e-11),
-    );
+    let report = gradient.solve(&matrix, &mut jacobi, &b, &mut x, Some(&free), &settings(1e-11));
     assert_eq!(report.end, ConjugateGradientEnd::Converged);
     assert!(largest_difference(&x, &expected) < 1e-8 * largest(&expected));
     assert!(x.iter().zip(&free).all(|(&x, &free)| free || x == 0.0));
@@ -151,17 +130,11 @@ fn ends_are_told_apart() {
     let mut gradient = ConjugateGradient::new(b.len());
     let solve = |matrix: &BlockMatrix, b: &[f64], gradient: &mut ConjugateGradient, limit| {
         let mut x = vec![0.0; b.len()];
-        let goal = ConjugateGradientSettings {
-            max_iterations: limit,
-            ..settings(1e-9)
-        };
+        let goal = ConjugateGradientSettings { max_iterations: limit, ..settings(1e-9) };
         gradient.solve(matrix, &mut Identity, b, &mut x, None, &goal)
     };
     let report = solve(&matrix, &b, &mut gradient, 2);
-    assert_eq!(
-        (report.iterations, report.end),
-        (2, ConjugateGradientEnd::IterationLimit)
-    );
+    assert_eq!((report.iterations, report.end), (2, ConjugateGradientEnd::IterationLimit));
     let mut spike = vec![0.0; b.len()];
     spike[100] = -50.0;
     matrix.add_diagonal(&spike, 1.0);
@@ -177,10 +150,7 @@ fn ends_are_told_apart() {
     assert_eq!(report.end, ConjugateGradientEnd::Breakdown);
     let zero = vec![0.0; b.len()];
     let report = solve(&random_matrix(60, 6, 25), &zero, &mut gradient, 500);
-    assert_eq!(
-        (report.iterations, report.end),
-        (0, ConjugateGradientEnd::Converged)
-    );
+    assert_eq!((report.iterations, report.end), (0, ConjugateGradientEnd::Converged));
 }
 
 /// A chain of blocks, whose factor has no fill.
@@ -257,10 +227,7 @@ fn incomplete_cholesky_shifts_where_pivots_fail_and_says_when_none_helps() {
     let mut incomplete = IncompleteCholesky::new(pattern, settings());
     matrix.add_diagonal(&vec![0.1 + 1e-5; matrix.dimension()], -1.0);
     let report = incomplete.factor(&matrix).unwrap();
-    assert!(
-        report.largest_shift > 0.0 && report.shifted_domains == 1,
-        "{report:?}"
-    );
+    assert!(report.largest_shift > 0.0 && report.shifted_domains == 1, "{report:?}");
     let mut spike = vec![0.0; matrix.dimension()];
     spike[20 * SLOTS] = -100.0;
     matrix.add_diagonal(&spike, 1.0);
@@ -271,9 +238,7 @@ fn incomplete_cholesky_shifts_where_pivots_fail_and_says_when_none_helps() {
 fn coarse_matrix_equals_the_dense_product() {
     let matrix = random_matrix(60, 5, 41);
     let mut sequence = Sequence(9);
-    let coordinates: Vec<[f64; 2]> = (0..60)
-        .map(|_| [7.0 * sequence.number(), 11.0 * sequence.number()])
-        .collect();
+    let coordinates: Vec<[f64; 2]> = (0..60).map(|_| [7.0 * sequence.number(), 11.0 * sequence.number()]).collect();
     let free: Vec<bool> = (0..matrix.dimension()).map(|s| s % 9 != 1).collect();
     let hats = Prolongation::bilinear(&coordinates, 6.0);
     let count = hats.coarse_nodes();
@@ -366,10 +331,7 @@ fn two_level(swatch: &Swatch, b: &[f64]) -> (Vec<f64>, ConjugateGradientReport) 
         b,
         &mut x,
         None,
-        &ConjugateGradientSettings {
-            max_iterations: 20,
-            ..settings(0.1)
-        },
+        &ConjugateGradientSettings { max_iterations: 20, ..settings(0.1) },
     );
     (x, report)
 }

@@ -42,20 +42,14 @@ fn add_spring(matrix: &mut BlockMatrix, pair: [usize; 2], stiffness: f64, g: &[f
 /// A random symmetric positive definite matrix, with about `degree` neighbours a row.
 pub fn random_matrix(rows: usize, degree: usize, seed: u64) -> BlockMatrix {
     let mut sequence = Sequence(seed);
-    let pairs: Vec<(u32, u32)> = (0..rows * degree / 2)
-        .map(|_| (sequence.integer(rows) as u32, sequence.integer(rows) as u32))
-        .collect();
-    let mut matrix = BlockMatrix::zeros(Arc::new(BlockPattern::from_pairs(
-        rows,
-        pairs.iter().copied(),
-    )));
+    let pairs: Vec<(u32, u32)> =
+        (0..rows * degree / 2).map(|_| (sequence.integer(rows) as u32, sequence.integer(rows) as u32)).collect();
+    let mut matrix = BlockMatrix::zeros(Arc::new(BlockPattern::from_pairs(rows, pairs.iter().copied())));
     for &(i, j) in pairs.iter().filter(|(i, j)| i != j) {
         let g = std::array::from_fn(|_| sequence.number());
         add_spring(&mut matrix, [i as usize, j as usize], 1.0, &g);
     }
-    let diagonal: Vec<f64> = (0..rows * SLOTS)
-        .map(|_| 0.2 + 0.1 * sequence.number())
-        .collect();
+    let diagonal: Vec<f64> = (0..rows * SLOTS).map(|_| 0.2 + 0.1 * sequence.number()).collect();
     matrix.add_diagonal(&diagonal, 1.0);
     matrix
 }
@@ -76,11 +70,7 @@ pub fn swatch(wales: usize, courses: usize) -> Swatch {
     let mut position = vec![[0.0; 3]; rows];
     for course in 0..courses {
         for along in 0..width {
-            let place = if course % 2 == 0 {
-                along
-            } else {
-                width - 1 - along
-            };
+            let place = if course % 2 == 0 { along } else { width - 1 - along };
             let node = course * width + along;
             let (wale, phase) = (place / 4, place % 4);
             let up = [0.1, 0.9, 0.9, 0.1][phase] + course as f64;
@@ -114,9 +104,7 @@ pub fn swatch(wales: usize, courses: usize) -> Swatch {
         d.iter_mut().for_each(|v| *v /= length);
         // Sliding shortens one side and lengthens the other: the last slots take part a little.
         let slide = 0.3;
-        let g = [
-            -d[0], -d[1], -d[2], slide, 0.0, d[0], d[1], d[2], -slide, 0.0,
-        ];
+        let g = [-d[0], -d[1], -d[2], slide, 0.0, d[0], d[1], d[2], -slide, 0.0];
         add_spring(&mut matrix, [i, j], stiffness, &g);
         for _ in 0..2 {
             let mut g = [0.0; 10];
@@ -136,11 +124,7 @@ pub fn swatch(wales: usize, courses: usize) -> Swatch {
         })
         .collect();
     matrix.fix_slots(&free, 1.0);
-    Swatch {
-        matrix,
-        coordinates,
-        free,
-    }
+    Swatch { matrix, coordinates, free }
 }
 
 /// The matrix in full, row-major.
@@ -165,10 +149,7 @@ pub fn dense_times(matrix: &[Vec<f64>], x: &[f64]) -> Vec<f64> {
 }
 
 pub fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 pub fn largest(a: &[f64]) -> f64 {
@@ -178,10 +159,7 @@ pub fn largest(a: &[f64]) -> f64 {
 /// The outcome on one, two and four threads.
 pub fn on_threads<T: Send>(run: impl Fn() -> T + Sync + Send) -> [T; 3] {
     [1, 2, 4].map(|threads| {
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(&run)
     })
 }

@@ -36,23 +36,15 @@ impl Motion {
     #[must_use]
     pub fn pose(&self, time: f64) -> Pose {
         let (rotation, translation) = match self.keys.iter().position(|key| key.time > time) {
-            None => self.keys.last().map_or((DVec3::ZERO, DVec3::ZERO), |key| {
-                (key.rotation, key.translation)
-            }),
+            None => self.keys.last().map_or((DVec3::ZERO, DVec3::ZERO), |key| (key.rotation, key.translation)),
             Some(0) => (self.keys[0].rotation, self.keys[0].translation),
             Some(i) => {
                 let (a, b) = (&self.keys[i - 1], &self.keys[i]);
                 let s = (time - a.time) / (b.time - a.time);
-                (
-                    a.rotation.lerp(b.rotation, s),
-                    a.translation.lerp(b.translation, s),
-                )
+                (a.rotation.lerp(b.rotation, s), a.translation.lerp(b.translation, s))
             }
         };
-        Pose {
-            rotation: DQuat::from_scaled_axis(rotation),
-            translation,
-        }
+        Pose { rotation: DQuat::from_scaled_axis(rotation), translation }
     }
 
     /// Where a point that starts at `point` is at a time.

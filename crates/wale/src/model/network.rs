@@ -48,9 +48,9 @@ pub struct WrapPair {
     pub outward_at_first: PassId,
     /// The pass next to node `q₁`, away from the contact (`x₃` of the paper).
     pub outward_at_second: PassId,
-    /// Periodic image of `outward_at_first`'s node relative to `q₀`'s copy that the contact is built on.
+    /// Periodic image of `outward_at_first`'s node relative to the contact's nodes.
     pub image_at_first: [i16; 2],
-    /// Periodic image of `outward_at_second`'s node relative to the same copy.
+    /// Periodic image of `outward_at_second`'s node relative to the contact's nodes.
     pub image_at_second: [i16; 2],
 }
 
@@ -65,6 +65,17 @@ pub struct StitchContact {
     pub wrap_sign: f64,
     /// The pairs that wrap.
     pub pairs: Vec<WrapPair>,
+}
+
+/// A pass next to another along a yarn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Neighbour {
+    /// The pass.
+    pub pass: PassId,
+    /// Periodic image of its node, relative to the pass it was asked from.
+    pub image: [i16; 2],
+    /// Times that the yarn closed on itself between the two.
+    pub turns: i16,
 }
 
 /// One loop of the chart, for inspection, colour and measurement.
@@ -112,6 +123,8 @@ pub struct Network {
     pub position: Vec<DVec3>,
     /// Unit vectors to the front of the fabric in the initial layout, one per node.
     pub front: Vec<DVec3>,
+    /// Where each node lies on the chart: columns from the left, rows from the cast-on \[–\].
+    pub chart_place: Vec<[f64; 2]>,
     /// Stitch contacts.
     pub stitches: Vec<StitchContact>,
     /// Loops of the chart.
@@ -166,9 +179,32 @@ impl Network {
         self.stack_pass.clear();
         for stack in stacks {
             self.stack_pass.extend(stack);
-            self.stack_start
-                .push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
+            self.stack_start.push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
         }
+    }
+    /// The pass `step` (`±1`) further along the yarn, with the periodic image of its node relative to this pass's
+    /// node, and how many times the yarn closed on itself on the way (`−1`, `0`, `1`). `None` past an open end.
+    #[must_use]
+    pub fn neighbour(&self, yarn: YarnId, pass: PassId, step: i32) -> Option<Neighbour> {
+        let passes = self.yarn_passes(yarn);
+        let (start, end) = (passes.start as i64, passes.end as i64);
+        let moved = i64::from(pass.0) + i64::from(step);
+        let (index, turns) = if moved < start {
+            (moved + (end - start), -1)
+        } else if moved >= end {
+            (moved - (end - start), 1)
+        } else {
+            (moved, 0)
+        };
+        let closure = match self.yarn_closure[yarn.index()] {
+            Some((image, _)) => image,
+            None if turns != 0 => return None,
+            None => [0; 2],
+        };
+        let to = PassId::new(usize::try_from(index).ok()?);
+        let (a, b) = (self.pass_image[pass.index()], self.pass_image[to.index()]);
+        let image = std::array::from_fn(|k| b[k] - a[k] + closure[k] * turns);
+        Some(Neighbour { pass: to, image, turns })
     }
     /// Total rest length of all yarns \[m\].
     #[must_use]

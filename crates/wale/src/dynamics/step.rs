@@ -1,0 +1,185 @@
+//! What is frozen for a step before it is solved, and what friction remembers after it.
+
+use glam::DVec3;
+
+use super::state::State;
+use super::system::System;
+use crate::contact::surface::{obstacle_distance, to_rest_frame};
+use crate::energy::{BendRate, Inertia, ObstacleContact, StretchRate, WrapRate};
+use crate::fabric::coordinates::{BLOCK, dof};
+use crate::model::Obstacle;
+
+/// Where a node touches an obstacle during a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Node.
+    pub node: u32,
+    /// Obstacle.
+    pub obstacle: u32,
+    /// Whether friction held the node when the step began.
+    pub held: bool,
+}
+
+/// Longest distance from a surface, in yarn radii, at which a node is watched for contact besides its own motion.
+const WATCH: f64 = 2.0;
+/// Depth at which an obstacle carries a thousand times the weight of the node's yarn under gravity, in yarn radii.
+const PENALTY_DEPTH: f64 = 1.0;
+/// Slip over which friction with an obstacle builds up, in yarn radii.
+const SLIP: f64 = 0.02;
+
+impl System {
+    /// Freezes mass, damping and friction at the state that a step of length `h` starts from.
+    pub(crate) fn begin_step(&mut self, state: &State, h: f64, friction: bool, compression: &mut Vec<f64>) {
+        let (q, v) = (&state.coordinates, &state.velocities);
+        let alpha = self.yarn.mass_damping;
+        let factor = 1.0 / (h * h) + alpha / h;
+        // Inertia pulls towards q + h v, mass damping towards q.
+        let reach = h / (1.0 + alpha * h);
+        let density = self.yarn.linear_density;
+        let inertia_stencils = self.stretch.set.stencils.as_slice();
+        self.inertia.update(q, |index, element, local| {
+            let rest = local[7] - local[3];
+            let stencil = &inertia_stencils[index];
+            *element = Inertia {
+                factor: factor * density * rest / 6.0,
+                direction: std::array::from_fn(|k| (local[4 + k] - local[k]) / rest),
+                target: std::array::from_fn(|i| local[i] + reach * v[stencil[i] as usize]),
+            };
+        });
+        let beta_over_h = self.yarn.stiffness_damping / h;
+        if beta_over_h > 0.0 {
+            let stretch_stiffness = self.yarn.stretch_stiffness;
+            self.stretch_rate.update(q, |_, element, local| {
+                let rest = local[7] - local[3];
+                let d = DVec3::from_slice(&local[4..7]) - DVec3::from_slice(&local[..3]);
+                *element =
+                    StretchRate { stiffness: beta_over_h * stretch_stiffness * rest, previous: d.length() / rest };
+            });
+            let bending_stiffness = self.yarn.bending_stiffness;
+            self.bend_rate.update(q, |_, element, local| {
+                *element = BendRate::starting_at(local, bending_stiffness, beta_over_h);
+            });
+            let wraps = &self.wrapping.set.elements;
+            self.wrap_rate.update(q, |index, element, local| {
+                *element = WrapRate::starting_at(local, &wraps[index], beta_over_h);
+            });
+        }
+        self.compression.evaluate(q, self.yarn.stretch_stiffness, compression);
+        let (mu, least) = (self.yarn.friction_coefficient, self.card.residual_compression);
+        let rubbing = &self.rubbing;
+        let lambda = &*compression;
+        self.friction.update(q, |index, element, _| {
+            let (pass, contact) = rubbing[index];
+            element.anchor = state.anchors[pass.index()];
+            // Without friction the spring is there but carries nothing.
+            element.limit = if friction { mu * lambda[contact].max(least) } else { 0.0 };
+        });
+    }
+
+    /// Moves the friction anchors of the passes to where the step left them.
+    pub(crate) fn drag_anchors(&self, q: &[f64], anchors: &mut [f64]) {
+        for ((element, stencil), (pass, _)) in
+            self.friction.set.elements.iter().zip(&self.friction.set.stencils).zip(&self.rubbing)
+        {
+            anchors[pass.index()] = element.dragged_anchor(q[stencil[0] as usize]);
+        }
+    }
+
+    /// Finds the nodes that may touch an obstacle during a step that starts at `time`.
+    pub(crate) fn find_touches(&mut self, obstacles: &[Obstacle], state: &State, h: f64, touches: &mut Vec<Touch>) {
+        touches.clear();
+        self.obstacles.set.elements.clear();
+        self.obstacles.set.stencils.clear();
+        let radius = self.yarn.radius;
+        for node in 0..self.coordinates.node_count() {
+            let x = self.coordinates.position_of(node, &state.coordinates);
+            let speed = DVec3::from_slice(&state.velocities[BLOCK * node..BLOCK * node + 3]).length();
+            for (index, obstacle) in obstacles.iter().enumerate() {
+                let reach = (1.0 + WATCH) * radius + 2.0 * h * speed;
+                let near = |time: f64| obstacle_distance(obstacle, x, time).0 < reach;
+                if near(state.time) || near(state.time + h) {
+                    let held =
+                        state.obstacle_anchors.chunks_exact(5).any(|a| a[0] as usize == node && a[1] as usize == index);
+                    touches.push(Touch { node: node as u32, obstacle: index as u32, held });
+                    let blank = ObstacleContact {
+                        stiffness: 0.0,
+                        point: [0.0; 3],
+                        normal: [0.0, 0.0, 1.0],
+                        anchor: [0.0; 3],
+                        anchor_stiffness: 1.0,
+                        limit: 0.0,
+                    };
+                    let first = dof(BLOCK * node);
+                    self.obstacles.set.push(blank, [first, first + 1, first + 2]);
+                }
+            }
+        }
+        if !touches.is_empty() || self.obstacles.set.is_empty() {
+            self.obstacles.plan(&self.chunks);
+        }
+        for (k, touch) in touches.iter().enumerate() {
+            let obstacle = &obstacles[touch.obstacle as usize];
+            let node = touch.node as usize;
+            let x = self.coordinates.position_of(node, &state.coordinates);
+            let mass = self.yarn.linear_density * self.yarn_at_node[node];
+            // Strong enough for a thousand weights, and stiffer in shorter steps, so that impacts stay shallow.
+            let stiffness = (1e3 * mass * 9.81 / (PENALTY_DEPTH * radius)).max(0.1 * mass / (h * h));
+            let (distance, _) = obstacle_distance(obstacle, x, state.time);
+            let depth = radius - distance;
+            let anchor = held_place(&state.obstacle_anchors, node, touch.obstacle as usize)
+                .map(|place| obstacle.motion.place(place, state.time + h));
+            let element = &mut self.obstacles.set.elements[k];
+            element.stiffness = stiffness;
+            if let (Some(anchor), true) = (anchor, depth > 0.0) {
+                element.anchor = anchor.to_array();
+                element.limit = obstacle.friction_coefficient * stiffness * depth;
+                element.anchor_stiffness = (element.limit / (SLIP * radius)).max(1e-3 * stiffness);
+            }
+        }
+    }
+
+    /// Sets the tangent planes of the obstacles at the current coordinates.
+    pub(crate) fn renew_touches(&mut self, obstacles: &[Obstacle], q: &[f64], time: f64, touches: &[Touch]) {
+        for (touch, element) in touches.iter().zip(&mut self.obstacles.set.elements) {
+            let x = self.coordinates.position_of(touch.node as usize, q);
+            let (distance, normal) = obstacle_distance(&obstacles[touch.obstacle as usize], x, time);
+            element.normal = normal.to_array();
+            element.point = (x - normal * (distance - self.yarn.radius)).to_array();
+        }
+    }
+
+    /// Notes where friction with obstacles holds nodes after a step that ended at `time`.
+    pub(crate) fn hold_touches(
+        &self,
+        obstacles: &[Obstacle],
+        q: &[f64],
+        time: f64,
+        touches: &[Touch],
+        anchors: &mut Vec<f64>,
+    ) {
+        anchors.clear();
+        for (touch, element) in touches.iter().zip(&self.obstacles.set.elements) {
+            let x = self.coordinates.position_of(touch.node as usize, q);
+            if element.depth(x.to_array()) <= 0.0 {
+                continue;
+            }
+            let place = if touch.held && element.limit > 0.0 {
+                let slip = DVec3::from_array(element.slip(x.to_array()));
+                let reach = element.limit / element.anchor_stiffness;
+                x - slip.clamp_length_max(reach)
+            } else {
+                x
+            };
+            let local = to_rest_frame(&obstacles[touch.obstacle as usize], place, time);
+            anchors.extend([f64::from(touch.node), f64::from(touch.obstacle), local.x, local.y, local.z]);
+        }
+    }
+}
+
+/// Where an obstacle holds a node, in the obstacle's rest frame; anchors are in order of node, then obstacle.
+fn held_place(anchors: &[f64], node: usize, obstacle: usize) -> Option<DVec3> {
+    let anchors = anchors.as_chunks::<5>().0;
+    let key = |a: &[f64; 5]| (a[0] as usize, a[1] as usize);
+    let found = anchors.binary_search_by_key(&(node, obstacle), key).ok()?;
+    Some(DVec3::from_slice(&anchors[found][2..]))
+}

@@ -1,0 +1,29 @@
+//! Energies: one file each, with value, gradient and Hessian, knowing nothing of the fabric they will be part of.
+
+pub mod bending;
+pub mod element;
+pub mod foundation;
+pub mod friction;
+pub mod gravity;
+pub mod inertia;
+pub mod load;
+pub mod obstacle_contact;
+pub mod rates;
+pub mod spacing;
+pub mod stitch_length;
+pub mod stretch;
+pub mod wrapping;
+
+pub use bending::Bending;
+pub use element::Element;
+pub use foundation::Foundation;
+pub use friction::AnchoredSpring;
+pub use gravity::Gravity;
+pub use inertia::Inertia;
+pub use load::Load;
+pub use obstacle_contact::ObstacleContact;
+pub use rates::{BendRate, StretchRate, WrapRate};
+pub use spacing::Spacing;
+pub use stitch_length::StitchLength;
+pub use stretch::Stretch;
+pub use wrapping::Wrapping;

@@ -1,0 +1,318 @@
+//! Wrapping of two yarns about a stitch contact.
+
+use std::f64::consts::PI;
+
+use wale_numerics::check::Local;
+use wale_numerics::jet::Real;
+use wale_numerics::jet::vector3::{cross, dot, scale, sub};
+
+use super::element::{Element, point};
+
+/// Wrapping of two opposite yarn segments about a stitch contact.
+///
+/// `V = ½ k_w L ω_a ω_b wrap(s ψ − ψ₀)²`                                      [Cirio2017, Eq. 2]
+///
+/// `ψ` is the angle between the triangles `(q₀, q₁, q₄)` and `(q₀, q₃, q₁)` about the hinge `q₀q₁` (Eqs. 7–13).
+/// Local coordinates: `x₀ x₁ x₃ x₄` \[m\].
+///
+/// Differs from the paper: `ψ` is signed (`atan2`), because Eq. 13's arc cosine has the wrong sign in half of the
+/// configurations and is singular at `0` and `π`; `s = ±1` comes from the stitch (test `the_sign_matters`). The
+/// weights `ω = sin²/(sin² + 0.1²)` of the angle between axis and segment let the term fade where a segment aligns
+/// with the axis and `ψ` loses its meaning (test `fades_where_a_segment_aligns`). `k_w` is in newtons, since
+/// `k_w L ψ²` is an energy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrapping {
+    /// `k_w L`: wrapping stiffness times the contact's rest length \[N·m\].
+    pub stiffness: f64,
+    /// Rest angle `ψ₀` \[rad\].
+    pub rest_angle: f64,
+    /// Sign `s` of the stitch, `±1`.
+    pub sign: f64,
+}
+
+/// Square of the sine below which the weight fades.
+const FADE: f64 = 0.01;
+
+/// `angle` moved into `(−π, π]` by whole turns.
+fn whole_turns(angle: f64) -> f64 {
+    ((angle + PI) / (2.0 * PI)).floor() * 2.0 * PI
+}
+
+impl Element<12> for Wrapping {
+    const NAME: &'static str = "wrapping";
+
+    fn energy<T: Real>(&self, q: &[T; 12]) -> T {
+        let psi = wrapping_angle(q).scale(self.sign).offset(-self.rest_angle);
+        let deviation = psi.offset(-whole_turns(psi.value()));
+        let [a, b] = sine_squares(q);
+        let weight = (a / a.offset(FADE)) * (b / b.offset(FADE));
+        (weight * deviation.square()).scale(0.5 * self.stiffness)
+    }
+
+    fn convex(&self, q: &[f64; 12]) -> Local<12> {
+        let hinge = Hinge::new(q);
+        let (energy, gradient, weight) = self.value(&hinge);
+        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
+        local.add_square(self.stiffness * weight, &hinge.gradient);
+        local
+    }
+
+    fn blended(&self, q: &[f64; 12], convexity: f64) -> Local<12> {
+        let hinge = Hinge::new(q);
+        let (energy, gradient, weight) = self.value(&hinge);
+        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
+        local.add_square(self.stiffness * weight, &hinge.gradient);
+        if convexity < 1.0 {
+            let psi = self.sign * hinge.angle - self.rest_angle;
+            let slope = self.stiffness * weight * (psi - whole_turns(psi)) * self.sign;
+            add_angle_curvature(q, (1.0 - convexity) * slope, &mut local.hessian);
+        }
+        local
+    }
+
+    fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
+        let (energy, gradient, _) = self.value(&Hinge::new(q));
+        (energy, gradient)
+    }
+}
+
+impl Wrapping {
+    /// Energy, gradient and weight `ω_a ω_b`.
+    fn value(&self, hinge: &Hinge) -> (f64, [f64; 12], f64) {
+        let psi = self.sign * hinge.angle - self.rest_angle;
+        let deviation = psi - whole_turns(psi);
+        let [a, b] = hinge.sine_squares;
+        let (wa, wb) = (a / (a + FADE), b / (b + FADE));
+        let weight = wa * wb;
+        let half = 0.5 * self.stiffness * deviation * deviation;
+        let (by_a, by_b) = (half * wb * FADE / ((a + FADE) * (a + FADE)), half * wa * FADE / ((b + FADE) * (b + FADE)));
+        let by_angle = self.stiffness * weight * deviation * self.sign;
+        let gradient = std::array::from_fn(|i| {
+            by_angle * hinge.gradient[i] + by_a * hinge.sine_gradient[0][i] + by_b * hinge.sine_gradient[1][i]
+        });
+        (half * weight, gradient, weight)
+    }
+}
+
+/// The signed wrapping angle `ψ` of `x₀ x₁ x₃ x₄` \[rad\].
+pub fn wrapping_angle<T: Real>(q: &[T; 12]) -> T {
+    let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+    let axis = sub(x1, x0);
+    let back = sub(x0, x1);
+    let va = cross(sub(x4, x1), back);
+    let vb = cross(back, sub(x3, x1));
+    let e = scale(axis, T::constant(1.0) / dot(axis, axis).sqrt());
+    dot(e, cross(va, vb)).atan2(dot(va, vb))
+}
+
+/// Adds `factor` times the Hessian of the wrapping angle by `x₀ x₁ x₃ x₄`.
+///
+/// By the axis `A = x₁ − x₀` and the sides `p = x₄ − x₁`, `r = x₃ − x₁`, with `m = v/|v|²` of `v_a = A × p` and
+/// `v_b = r × A`, the gradient of `ψ` is `(p·e) m_a + (r·e) m_b`, `−|A| m_a`, `−|A| m_b`; this is its derivative, a
+/// shorter form of [Cirio2017, Eq. 16].
+fn add_angle_curvature(q: &[f64; 12], factor: f64, hessian: &mut [[f64; 12]; 12]) {
+    let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+    let (axis, p, r) = (sub(x1, x0), sub(x4, x1), sub(x3, x1));
+    let length = dot(axis, axis).sqrt();
+    let e = scale(axis, 1.0 / length);
+    let (va, vb) = (cross(axis, p), cross(r, axis));
+    let (a2, b2) = (dot(va, va), dot(vb, vb));
+    if a2 < 1e-60 || b2 < 1e-60 {
+        return;
+    }
+    let (ma, mb) = (scale(va, 1.0 / a2), scale(vb, 1.0 / b2));
+    let (pe, re) = (dot(p, e), dot(r, e));
+    // D = ∂m/∂v; `D [w]×` row by row: row i is (Dᵢ) × w, as Dᵢ·(w × x) = (Dᵢ × w)·x.
+    let times = |m: [f64; 3], v2: f64, w: [f64; 3]| -> [[f64; 3]; 3] {
+        std::array::from_fn(|i| {
+            let row: [f64; 3] = std::array::from_fn(|j| f64::from(u8::from(i == j)) / v2 - 2.0 * m[i] * m[j]);
+            cross(row, w)
+        })
+    };
+    let (da_axis, da_p) = (times(ma, a2, axis), times(ma, a2, p));
+    let (db_axis, db_r) = (times(mb, b2, axis), times(mb, b2, r));
+    // Blocks by (A, p, r); the p–r block is zero.
+    let mut by = [[[[0.0; 3]; 3]; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            by[1][1][i][j] = -length * da_axis[i][j];
+            by[2][2][i][j] = length * db_axis[i][j];
+            by[1][0][i][j] = -ma[i] * e[j] + length * da_p[i][j];
+            by[2][0][i][j] = -mb[i] * e[j] - length * db_r[i][j];
+            by[0][0][i][j] =
+                (ma[i] * (p[j] - pe * e[j]) + mb[i] * (r[j] - re * e[j])) / length - pe * da_p[i][j] + re * db_r[i][j];
+        }
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            by[0][1][i][j] = by[1][0][j][i];
+            by[0][2][i][j] = by[2][0][j][i];
+        }
+    }
+    // x₀ x₁ x₃ x₄ in terms of A, p, r.
+    const SIGNS: [[f64; 3]; 4] = [[-1.0, 0.0, 0.0], [1.0, -1.0, -1.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+    for a in 0..4 {
+        for b in 0..4 {
+            for s in 0..3 {
+                for t in 0..3 {
+                    let sign = factor * SIGNS[a][s] * SIGNS[b][t];
+                    if sign != 0.0 {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                hessian[3 * a + i][3 * b + j] += sign * by[s][t][i][j];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn sine_squares<T: Real>(q: &[T; 12]) -> [T; 2] {
+    let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+    let axis = sub(x1, x0);
+    let of = |side: [T; 3]| {
+        let v = cross(side, axis);
+        dot(v, v) / (dot(axis, axis) * dot(side, side))
+    };
+    [of(sub(x4, x0)), of(sub(x3, x1))]
+}
+
+/// The wrapping angle, its gradient [Cirio2017, Eq. 14], and the sines of both sides to the axis.
+struct Hinge {
+    angle: f64,
+    gradient: [f64; 12],
+    sine_squares: [f64; 2],
+    sine_gradient: [[f64; 12]; 2],
+}
+
+impl Hinge {
+    fn new(q: &[f64; 12]) -> Self {
+        let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+        let axis = sub(x1, x0);
+        let axis_square = dot(axis, axis);
+        let e = scale(axis, 1.0 / axis_square.sqrt());
+        let va = cross(axis, sub(x4, x1));
+        let vb = cross(sub(x3, x1), axis);
+        let (a2, b2) = (dot(va, va), dot(vb, vb));
+        let angle = dot(e, cross(va, vb)).atan2(dot(va, vb));
+        // A segment along the axis has weight zero; any finite direction will do there.
+        let (na, nb) = (scale(va, 1.0 / a2.max(1e-60)), scale(vb, 1.0 / b2.max(1e-60)));
+        let (a0, a1, a4) = (dot(sub(x4, x1), e), dot(sub(x0, x4), e), dot(axis, e));
+        let (b0, b1, b3) = (dot(sub(x1, x3), e), dot(sub(x3, x0), e), -a4);
+        let mut gradient = [0.0; 12];
+        for k in 0..3 {
+            gradient[k] = b0 * nb[k] - a0 * na[k];
+            gradient[3 + k] = b1 * nb[k] - a1 * na[k];
+            gradient[6 + k] = b3 * nb[k];
+            gradient[9 + k] = -a4 * na[k];
+        }
+        // sin² = |v|²/(|axis|²|side|²), by side and by axis.
+        let (pa, pb) = (sub(x4, x0), sub(x3, x1));
+        let sine = |v: [f64; 3], v2: f64, side: [f64; 3]| {
+            let side_square = dot(side, side);
+            let s = v2 / (axis_square * side_square);
+            let factor = 2.0 / (axis_square * side_square);
+            // |side × axis|²: by side axis × (side × axis), by axis (side × axis) × side.
+            let by_side = sub(scale(cross(axis, v), factor), scale(side, 2.0 * s / side_square));
+            let by_axis = sub(scale(cross(v, side), factor), scale(axis, 2.0 * s / axis_square));
+            (s, by_side, by_axis)
+        };
+        let (sa, a_side, a_axis) = sine(scale(va, -1.0), a2, pa);
+        let (sb, b_side, b_axis) = sine(vb, b2, pb);
+        let mut sine_gradient = [[0.0; 12]; 2];
+        for k in 0..3 {
+            sine_gradient[0][k] = -a_axis[k] - a_side[k];
+            sine_gradient[0][3 + k] = a_axis[k];
+            sine_gradient[0][9 + k] = a_side[k];
+            sine_gradient[1][k] = -b_axis[k];
+            sine_gradient[1][3 + k] = b_axis[k] - b_side[k];
+            sine_gradient[1][6 + k] = b_side[k];
+        }
+        Self { angle, gradient, sine_squares: [sa, sb], sine_gradient }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::element::testing::{Random, check};
+    use super::*;
+
+    fn random_contact(random: &mut Random) -> [f64; 12] {
+        let mut q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.3, 0.8, 0.1, -0.3, -0.9, 0.2];
+        for x in &mut q {
+            *x += 0.4 * random.next();
+        }
+        q
+    }
+
+    #[test]
+    fn derivatives() {
+        let mut random = Random::new(4);
+        for sign in [1.0, -1.0] {
+            for _ in 0..20 {
+                let element = Wrapping { stiffness: 2.0, rest_angle: 1.6, sign };
+                check(&element, &random_contact(&mut random), 1.0);
+            }
+        }
+    }
+
+    #[test]
+    fn the_paper_s_gradient_of_the_angle() {
+        let mut random = Random::new(5);
+        for _ in 0..20 {
+            let q = random_contact(&mut random);
+            let jet = wrapping_angle(&wale_numerics::jet::Jet::variables(&q));
+            let hinge = Hinge::new(&q);
+            for i in 0..12 {
+                assert!((jet.gradient[i] - hinge.gradient[i]).abs() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn the_angle_s_curvature_is_exact() {
+        let mut random = Random::new(15);
+        for _ in 0..20 {
+            let q = random_contact(&mut random);
+            let exact = wrapping_angle(&wale_numerics::jet::Jet::variables(&q)).hessian();
+            let mut hessian = [[0.0; 12]; 12];
+            add_angle_curvature(&q, 1.0, &mut hessian);
+            for i in 0..12 {
+                for j in 0..12 {
+                    assert!((hessian[i][j] - exact[i][j]).abs() < 1e-9, "{i} {j}: {} {}", hessian[i][j], exact[i][j]);
+                }
+            }
+        }
+    }
+
+    /// Sides at right angles to the axis, folded by `angle` about it.
+    fn folded(angle: f64) -> [f64; 12] {
+        [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, angle.cos(), angle.sin(), 0.0, -1.0, 0.0]
+    }
+
+    #[test]
+    fn the_sign_matters() {
+        // Folding to either side gives angles of opposite sign; an arc cosine gives the same for both.
+        let (up, down) = (wrapping_angle(&folded(0.5)), wrapping_angle(&folded(-0.5)));
+        assert!((up.abs() - 0.5).abs() < 1e-12 && (up + down).abs() < 1e-12);
+        let element = Wrapping { stiffness: 2.0, rest_angle: 0.5, sign: up.signum() };
+        assert!(element.energy(&folded(0.5)) < 1e-20);
+        assert!((element.energy(&folded(-0.5)) / (1.0 / 1.01f64.powi(2)) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn fades_where_a_segment_aligns() {
+        let element = Wrapping { stiffness: 2.0, rest_angle: 1.5, sign: 1.0 };
+        let norm = |tilt: f64| {
+            let mut q = folded(0.2);
+            (q[6], q[7], q[8]) = (1.0 + tilt.cos(), tilt.sin(), 0.0);
+            let g = element.convex(&q).gradient;
+            g.iter().map(|x| x * x).sum::<f64>().sqrt()
+        };
+        // Without the weight the gradient would grow like 1/sin: a hundredfold from 0.1 to 0.001.
+        let (far, near, nearer) = (norm(0.1), norm(1e-3), norm(1e-6));
+        assert!(near < far && nearer < 1e-2 * far && norm(0.0).is_finite(), "{far} {near} {nearer}");
+    }
+}

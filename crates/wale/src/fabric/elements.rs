@@ -1,0 +1,117 @@
+//! Elements of one kind with the coordinates each one reads.
+
+use wale_numerics::check::Local;
+
+use super::coordinates::Dof;
+use crate::energy::Element;
+
+/// Elements of one kind.
+#[derive(Clone, Debug)]
+pub struct Elements<E, const N: usize> {
+    /// The elements.
+    pub elements: Vec<E>,
+    /// The coordinates each reads, in its local order.
+    pub stencils: Vec<[Dof; N]>,
+}
+
+impl<E, const N: usize> Default for Elements<E, N> {
+    fn default() -> Self {
+        Self { elements: Vec::new(), stencils: Vec::new() }
+    }
+}
+
+impl<E: Element<N>, const N: usize> Elements<E, N> {
+    /// Adds an element.
+    pub fn push(&mut self, element: E, stencil: [Dof; N]) {
+        self.elements.push(element);
+        self.stencils.push(stencil);
+    }
+    /// Number of elements.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.elements.len()
+    }
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.elements.is_empty()
+    }
+    /// Local coordinates of an element.
+    #[must_use]
+    pub fn local(&self, index: usize, q: &[f64]) -> [f64; N] {
+        let stencil = &self.stencils[index];
+        std::array::from_fn(|i| q[stencil[i] as usize])
+    }
+    /// Sum of the energies \[J\].
+    #[must_use]
+    pub fn energy(&self, q: &[f64]) -> f64 {
+        (0..self.len()).map(|index| self.elements[index].energy(&self.local(index, q))).sum()
+    }
+}
+
+/// Which Hessian a linearisation uses.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Linearisation {
+    /// Exact by automatic differentiation, indefinite far from equilibrium.
+    Exact,
+    /// In closed form, from nearly exact (0) to positive semi-definite element by element (1).
+    Blended(f64),
+}
+
+impl Linearisation {
+    /// Positive semi-definite, element by element.
+    pub const CONVEX: Self = Self::Blended(1.0);
+}
+
+/// Elements of some kind, as a solver that visits them one by one sees them.
+pub trait ElementSet {
+    /// Name of the kind.
+    fn name(&self) -> &'static str;
+    /// Sum of the energies \[J\].
+    fn total(&self, q: &[f64]) -> f64;
+    /// Calls `visit(stencil, gradient, Hessian rows)` for every element, in order, and returns the energy \[J\].
+    fn visit(
+        &self,
+        q: &[f64],
+        linearisation: Linearisation,
+        visit: &mut dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64),
+    ) -> f64;
+    /// Calls `visit(stencil, gradient)` for every element and returns the energy \[J\].
+    fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64;
+}
+
+impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
+    fn name(&self) -> &'static str {
+        E::NAME
+    }
+    fn total(&self, q: &[f64]) -> f64 {
+        self.energy(q)
+    }
+    fn visit(
+        &self,
+        q: &[f64],
+        linearisation: Linearisation,
+        visit: &mut dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64),
+    ) -> f64 {
+        let mut energy = 0.0;
+        for (index, element) in self.elements.iter().enumerate() {
+            let q = self.local(index, q);
+            let local: Local<N> = match linearisation {
+                Linearisation::Exact => element.exact(&q),
+                Linearisation::Blended(convexity) => element.blended(&q, convexity),
+            };
+            energy += local.energy;
+            visit(&self.stencils[index], &local.gradient, &|i, j| local.hessian[i][j]);
+        }
+        energy
+    }
+    fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64 {
+        let mut energy = 0.0;
+        for (index, element) in self.elements.iter().enumerate() {
+            let (value, gradient) = element.gradient(&self.local(index, q));
+            energy += value;
+            visit(&self.stencils[index], &gradient);
+        }
+        energy
+    }
+}

@@ -1,0 +1,125 @@
+//! The elastic elements of a network, made from its yarns, its contacts and the cards.
+
+use super::coordinates::{CoordinateMap, Dof};
+use super::elements::{ElementSet, Elements};
+use crate::energy::{Bending, Spacing, StitchLength, Stretch, Wrapping};
+use crate::model::{ContactPair, FabricCard, Network, NodeId, PassId, PassKind, SegmentKind, YarnCard, YarnId};
+
+/// Elastic elements of a fabric.
+#[derive(Clone, Debug, Default)]
+pub struct Mechanics {
+    /// Stretch of segments, in yarn order.
+    pub stretch: Elements<Stretch, 8>,
+    /// Bending at passes, in yarn order.
+    pub bending: Elements<Bending, 12>,
+    /// Wrapping of stitch contacts.
+    pub wrapping: Elements<Wrapping, 12>,
+    /// Yarn length of stitch contacts.
+    pub stitch_length: Elements<StitchLength, 2>,
+    /// Spacing of adjacent loops.
+    pub spacing: Elements<Spacing, 2>,
+}
+
+impl Mechanics {
+    /// Makes the elements of a network.
+    pub fn new(network: &Network, yarn: &YarnCard, card: &FabricCard, map: &mut dyn CoordinateMap) -> Self {
+        let mut mechanics = Self::default();
+        for y in 0..network.yarn_count() {
+            for p in network.yarn_passes(YarnId::new(y)) {
+                mechanics.add_pass(network, YarnId::new(y), PassId::new(p), yarn, card, map);
+            }
+        }
+        mechanics.add_contacts(network, card, map);
+        mechanics
+    }
+
+    /// All kinds, for whoever treats them alike.
+    #[must_use]
+    pub fn sets(&self) -> [&dyn ElementSet; 5] {
+        [&self.stretch, &self.bending, &self.wrapping, &self.stitch_length, &self.spacing]
+    }
+
+    /// The bend at a pass and the segment after it.
+    fn add_pass(
+        &mut self,
+        network: &Network,
+        yarn: YarnId,
+        pass: PassId,
+        material: &YarnCard,
+        card: &FabricCard,
+        map: &mut dyn CoordinateMap,
+    ) {
+        let Some(next) = network.neighbour(yarn, pass, 1) else { return };
+        let here = point(map, network, pass, [0; 2], 0);
+        let there = point(map, network, next.pass, next.image, next.turns);
+        self.stretch.push(Stretch { stiffness: material.stretch_stiffness }, join(here, there));
+        if let Some(previous) = network.neighbour(yarn, pass, -1) {
+            let before = point(map, network, previous.pass, previous.image, previous.turns);
+            let rest_angle = match network.pass_kind[pass.index()] {
+                PassKind::FootHead => card.bend_angle_foot_head,
+                PassKind::Leg => card.bend_angle_leg,
+                PassKind::Edge => 0.0,
+            };
+            let mut stencil = [0; 12];
+            stencil[..4].copy_from_slice(&before);
+            stencil[4..8].copy_from_slice(&here);
+            stencil[8..].copy_from_slice(&there);
+            self.bending.push(Bending { stiffness: material.bending_stiffness, rest_angle }, stencil);
+        }
+        let distance = match network.segment_kind[pass.index()] {
+            SegmentKind::Stitch => {
+                let element = StitchLength { stiffness: card.length_stiffness, rest_length: card.stitch_length };
+                self.stitch_length.push(element, [here[3], there[3]]);
+                return;
+            }
+            SegmentKind::Leg => card.spacing_leg,
+            SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker,
+            // Half of what lies there at first, where the layout is tighter than the card.
+            SegmentKind::Edge => {
+                let at = |p: PassId| network.arc_length[p.index()];
+                card.spacing_head_sinker.min(0.5 * (at(next.pass) - at(pass)).abs())
+            }
+        };
+        if distance > 0.0 && (network.pass_slides[pass.index()] || network.pass_slides[next.pass.index()]) {
+            self.spacing.push(Spacing { stiffness: card.spacing_stiffness, distance }, [here[3], there[3]]);
+        }
+    }
+
+    fn add_contacts(&mut self, network: &Network, card: &FabricCard, map: &mut dyn CoordinateMap) {
+        for contact in &network.stitches {
+            let axis = contact.nodes.map(|node| map.position(node, [0; 2]));
+            for pair in &contact.pairs {
+                let side = |map: &mut dyn CoordinateMap, pass: PassId, image| {
+                    map.position(network.pass_node[pass.index()], image)
+                };
+                let x4 = side(map, pair.outward_at_first, pair.image_at_first);
+                let x3 = side(map, pair.outward_at_second, pair.image_at_second);
+                let rest_angle = match pair.pair {
+                    ContactPair::Course => card.wrapping_angle_course,
+                    ContactPair::Leg => card.wrapping_angle_leg,
+                };
+                let element = Wrapping {
+                    stiffness: card.wrapping_stiffness * card.stitch_length,
+                    rest_angle,
+                    sign: contact.wrap_sign,
+                };
+                let mut stencil = [0; 12];
+                for (k, x) in [axis[0], axis[1], x3, x4].into_iter().enumerate() {
+                    stencil[3 * k..3 * k + 3].copy_from_slice(&x);
+                }
+                self.wrapping.push(element, stencil);
+            }
+        }
+    }
+}
+
+/// Coordinates `x u` of a pass.
+fn point(map: &mut dyn CoordinateMap, network: &Network, pass: PassId, image: [i16; 2], turns: i16) -> [Dof; 4] {
+    let node: NodeId = network.pass_node[pass.index()];
+    let [x, y, z] = map.position(node, image);
+    [x, y, z, map.sliding(pass, turns)]
+}
+
+fn join(a: [Dof; 4], b: [Dof; 4]) -> [Dof; 8] {
+    [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]]
+}

@@ -1,0 +1,11 @@
+//! The mechanics of a network: its coordinates, and the elements that act on them.
+
+pub mod coordinates;
+pub mod elements;
+pub mod mechanics;
+pub mod tile;
+
+pub use coordinates::{CoordinateMap, Coordinates, Dof};
+pub use elements::{ElementSet, Elements};
+pub use mechanics::Mechanics;
+pub use tile::TileCoordinates;

@@ -1,0 +1,342 @@
+//! The grammar of one row, and what it gives for a number of stitches.
+
+use std::ops::Range;
+
+use super::lexer::Line;
+use super::{DEEPEST_NESTING, InstructionError, InstructionErrorReason as Reason};
+use crate::pattern::chart::Stitch;
+
+type Parsed<T> = Result<T, InstructionError>;
+
+/// A part of a row as it is worked, and its place in the text.
+#[derive(Clone, Debug)]
+pub(super) struct Part {
+    kind: PartKind,
+    place: Range<usize>,
+    source: String,
+}
+
+#[derive(Clone, Debug)]
+enum PartKind {
+    /// `k3`.
+    Stitches(Stitch, u64),
+    /// `[…] 3 times`: the parts, their stitches, and how often.
+    Repeat(Vec<Part>, u64, u64),
+    /// `*…*` and the like: the parts, their stitches, and how many stitches of the row to leave over (what follows
+    /// if `None`).
+    Fill(Vec<Part>, u64, Option<u64>),
+}
+
+/// Reads parts up to the end of the line.
+pub(super) fn parse(line: &mut Line<'_>) -> Parsed<Vec<Part>> {
+    let mut parts = sequence(line, End::Line, 0)?;
+    if !line.is_empty() {
+        return Err(line.expected("a stitch"));
+    }
+    if parts.is_empty() {
+        return Err(line.expected("stitches"));
+    }
+    // "Row 1: knit" knits the whole row.
+    if let [part] = parts.as_mut_slice()
+        && let PartKind::Stitches(_, 1) = part.kind
+        && !part.source.ends_with(|c: char| c.is_ascii_digit())
+    {
+        let whole = part.clone();
+        part.kind = PartKind::Fill(vec![whole], 1, Some(0));
+    }
+    Ok(parts)
+}
+
+/// What ends a sequence of parts.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    Line,
+    Bracket(char),
+    Star,
+}
+
+fn sequence(line: &mut Line<'_>, end: End, depth: usize) -> Parsed<Vec<Part>> {
+    if depth > DEEPEST_NESTING {
+        return Err(line.error(Reason::TooDeep));
+    }
+    let mut parts = Vec::new();
+    loop {
+        line.skip_separators();
+        let start = line.place().start;
+        let kind = match (line.sign(), end) {
+            (Some('*'), End::Star) => break,
+            (Some(close), End::Bracket(closer)) if close == closer => break,
+            (Some(open @ ('[' | '(')), _) => bracket(line, open, depth)?,
+            (Some('*'), _) => star(line, depth)?,
+            (Some(_), _) => return Err(line.expected("a stitch")),
+            (None, _) => match line.word() {
+                None => break,
+                Some("rep" | "repeat") if end == End::Star => break,
+                Some(_) => stitches(line)?,
+            },
+        };
+        let place = start..line.end_of_last();
+        let source = line.source(&place);
+        parts.push(Part { kind, place, source });
+    }
+    Ok(parts)
+}
+
+/// `[…]` or `(…)` and how often.
+fn bracket(line: &mut Line<'_>, open: char, depth: usize) -> Parsed<PartKind> {
+    let start = line.place().start;
+    line.advance(1);
+    let closer = if open == '[' { ']' } else { ')' };
+    let parts = sequence(line, End::Bracket(closer), depth + 1)?;
+    if !line.take_sign(closer) {
+        return Err(line.expected("the closing bracket"));
+    }
+    let count = fixed_count(line, &parts, start)?;
+    if let Some(leave) = stretch(line)? {
+        return Ok(PartKind::Fill(parts, count, Some(leave)));
+    }
+    let times = times(line)?.unwrap_or(1);
+    repeat(line, parts, count, times, start)
+}
+
+/// `*…*`, `*…* 3 times`, `*…*; rep from * to end` or `*…; rep from * to end`.
+fn star(line: &mut Line<'_>, depth: usize) -> Parsed<PartKind> {
+    let start = line.place().start;
+    line.advance(1);
+    let parts = sequence(line, End::Star, depth + 1)?;
+    let closed = line.take_sign('*');
+    let count = fixed_count(line, &parts, start)?;
+    // A separator may stand between the closing star and "rep from *".
+    let mut ahead = 0;
+    while closed && matches!(line.sign_after(ahead), Some(',' | ';' | '.')) {
+        ahead += 1;
+    }
+    if matches!(line.word_after(ahead), Some("rep" | "repeat")) {
+        line.advance(ahead + 1);
+        if !(line.take_word(&["from"]) && line.take_sign('*')) {
+            return Err(line.expected("`from *`"));
+        }
+        if let Some(leave) = stretch(line)? {
+            return Ok(PartKind::Fill(parts, count, Some(leave)));
+        }
+        return match times(line)? {
+            // Knitters count the times after the first.
+            Some(more) => repeat(line, parts, count, more + 1, start),
+            None => Ok(PartKind::Fill(parts, count, None)),
+        };
+    }
+    if !closed {
+        return Err(line.expected("a closing `*` or `rep from *`"));
+    }
+    if let Some(leave) = stretch(line)? {
+        return Ok(PartKind::Fill(parts, count, Some(leave)));
+    }
+    match times(line)? {
+        Some(times) => repeat(line, parts, count, times, start),
+        None => Ok(PartKind::Fill(parts, count, None)),
+    }
+}
+
+fn repeat(line: &Line<'_>, parts: Vec<Part>, count: u64, times: u64, start: usize) -> Parsed<PartKind> {
+    match count.checked_mul(times) {
+        Some(_) => Ok(PartKind::Repeat(parts, count, times)),
+        None => {
+            let found = format!("{count} × {times}");
+            Err(line.error_at(start..line.end_of_last(), Reason::Count { found }))
+        }
+    }
+}
+
+/// `k`, `k2`, `knit 2 sts`, `k to end`, `purl to last 3 sts`, `knit across`.
+fn stitches(line: &mut Line<'_>) -> Parsed<PartKind> {
+    let place = line.place();
+    let word = line.word().unwrap_or_default().to_owned();
+    let unknown = || Reason::UnknownStitch { word: line.source(&place) };
+    let (name, digits) = match word.find(|c: char| c.is_ascii_digit()) {
+        Some(at) => word.split_at(at),
+        None => (word.as_str(), ""),
+    };
+    let stitch = match name {
+        "k" | "knit" => Stitch::Knit,
+        "p" | "purl" => Stitch::Purl,
+        _ => return Err(line.error(unknown())),
+    };
+    if !digits.is_empty() {
+        if !digits.bytes().all(|b| b.is_ascii_digit()) {
+            return Err(line.error(unknown()));
+        }
+        let count = line.count(digits)?;
+        line.advance(1);
+        return Ok(PartKind::Stitches(stitch, count));
+    }
+    line.advance(1);
+    if let Some(leave) = stretch(line)? {
+        let one = Part { kind: PartKind::Stitches(stitch, 1), source: line.source(&place), place };
+        return Ok(PartKind::Fill(vec![one], 1, Some(leave)));
+    }
+    let counted = line.word().is_some_and(|word| word.starts_with(|c: char| c.is_ascii_digit()));
+    let count = if counted { line.number("a count")? } else { 1 };
+    line.take_word(&["st", "sts", "stitch", "stitches"]);
+    Ok(PartKind::Stitches(stitch, count))
+}
+
+/// `to end`, `to last 3 sts`, `across`, `around`, `all sts`: how many stitches are left over.
+fn stretch(line: &mut Line<'_>) -> Parsed<Option<u64>> {
+    if line.take_word(&["across", "around", "all", "every"]) {
+        line.take_word(&["st", "sts", "stitch", "stitches"]);
+        return Ok(Some(0));
+    }
+    if !line.take_word(&["to"]) {
+        return Ok(None);
+    }
+    line.take_word(&["the"]);
+    if line.take_word(&["end"]) {
+        if line.take_word(&["of"]) {
+            line.take_word(&["the"]);
+            line.take_word(&["row", "rnd", "round"]);
+        }
+        return Ok(Some(0));
+    }
+    if line.take_word(&["last"]) {
+        let one = line.take_word(&["st", "stitch"]);
+        let leave = if one { 1 } else { line.number("a count")? };
+        line.take_word(&["st", "sts", "stitch", "stitches"]);
+        return Ok(Some(leave));
+    }
+    Err(line.expected("`end` or `last … sts`"))
+}
+
+/// `3 times`, `3 more times`, `once`, `twice`, `x3`.
+fn times(line: &mut Line<'_>) -> Parsed<Option<u64>> {
+    let times = match line.word() {
+        Some("once") => 1,
+        Some("twice") => 2,
+        Some("x") => {
+            line.advance(1);
+            return line.number("a count").map(Some);
+        }
+        Some(word) if word.starts_with('x') => {
+            let times = line.count(&word[1..])?;
+            line.advance(1);
+            return Ok(Some(times));
+        }
+        Some(word) if word.starts_with(|c: char| c.is_ascii_digit()) => {
+            let times = line.number("a count")?;
+            line.take_word(&["more"]);
+            if !line.take_word(&["times", "time"]) {
+                return Err(line.expected("`times`"));
+            }
+            return Ok(Some(times));
+        }
+        _ => return Ok(None),
+    };
+    line.advance(1);
+    line.take_word(&["more"]);
+    Ok(Some(times))
+}
+
+/// Stitches of parts that are to be repeated; none of them may stretch.
+fn fixed_count(line: &Line<'_>, parts: &[Part], start: usize) -> Parsed<u64> {
+    if parts.is_empty() {
+        return Err(line.error_at(start..line.end_of_last(), Reason::NothingToRepeat));
+    }
+    let mut sum = 0_u64;
+    for part in parts {
+        let count = part.fixed().ok_or_else(|| {
+            let source = part.source.clone();
+            line.error_at(part.place.clone(), Reason::SecondFill { part: source })
+        })?;
+        sum = sum.checked_add(count).ok_or_else(|| {
+            let found = part.source.clone();
+            line.error_at(part.place.clone(), Reason::Count { found })
+        })?;
+    }
+    Ok(sum)
+}
+
+impl Part {
+    /// Its stitches, unless it stretches. Products were checked when the part was read.
+    fn fixed(&self) -> Option<u64> {
+        match &self.kind {
+            PartKind::Stitches(_, count) => Some(*count),
+            PartKind::Repeat(_, count, times) => Some(count * times),
+            PartKind::Fill(..) => None,
+        }
+    }
+
+    fn work(&self, times: u64, row: &mut Vec<Stitch>) {
+        for _ in 0..times {
+            match &self.kind {
+                PartKind::Stitches(stitch, count) => {
+                    row.extend((0..*count).map(|_| *stitch));
+                }
+                PartKind::Repeat(parts, _, times) => {
+                    for _ in 0..*times {
+                        parts.iter().for_each(|part| part.work(1, row));
+                    }
+                }
+                PartKind::Fill(parts, ..) => parts.iter().for_each(|part| part.work(1, row)),
+            }
+        }
+    }
+}
+
+/// Works a row of `total` stitches, in the order and as seen by the knitter.
+pub(super) fn work(parts: &[Part], total: u64, row: u64) -> Parsed<Vec<Stitch>> {
+    let error = |part: &Part, reason| InstructionError::new(part.place.clone(), Some(row), reason);
+    // Count first: nothing is laid out before the counts are known to work out.
+    let mut done = 0_u64;
+    let mut plan = Vec::with_capacity(parts.len());
+    for (i, part) in parts.iter().enumerate() {
+        let source = || part.source.clone();
+        let times = match &part.kind {
+            PartKind::Fill(_, repeat, leave) => {
+                let after = match leave {
+                    Some(leave) => *leave,
+                    None => {
+                        let mut sum = 0_u64;
+                        for later in &parts[i + 1..] {
+                            let count = later.fixed().ok_or_else(|| {
+                                let part = later.source.clone();
+                                error(later, Reason::SecondFill { part })
+                            })?;
+                            sum = sum.saturating_add(count);
+                        }
+                        sum
+                    }
+                };
+                let taken = done.saturating_add(after);
+                let room = total.checked_sub(taken).ok_or_else(|| {
+                    let part_name = source();
+                    let reason = Reason::TooMany { part: part_name, found: taken, total };
+                    error(part, reason)
+                })?;
+                if !room.is_multiple_of(*repeat) {
+                    let reason = Reason::NoMultiple { part: source(), repeat: *repeat, room, total };
+                    return Err(error(part, reason));
+                }
+                done += room;
+                room / repeat
+            }
+            _ => {
+                done = done.saturating_add(part.fixed().unwrap_or(0));
+                1
+            }
+        };
+        if done > total {
+            let reason = Reason::TooMany { part: source(), found: done, total };
+            return Err(error(part, reason));
+        }
+        plan.push(times);
+    }
+    if done < total {
+        let last = &parts[parts.len() - 1];
+        let reason = Reason::TooFew { part: last.source.clone(), found: done, total };
+        return Err(error(last, reason));
+    }
+    let mut stitches = Vec::with_capacity(usize::try_from(total).unwrap_or(0));
+    for (part, times) in parts.iter().zip(plan) {
+        part.work(times, &mut stitches);
+    }
+    Ok(stitches)
+}

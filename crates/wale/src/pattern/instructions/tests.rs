@@ -1,0 +1,187 @@
+//! What written instructions give, and how bad ones are refused.
+
+use super::*;
+use crate::pattern::chart::{Side, Stitch};
+use crate::pattern::symbols::write_symbols;
+use proptest::prelude::*;
+
+/// The chart's rows, the first worked first.
+fn rows(text: &str) -> Vec<String> {
+    let mut lines = write_symbols(&read_instructions(text, None).unwrap().chart);
+    lines.reverse();
+    lines
+}
+
+fn refused(text: &str) -> (String, String) {
+    let error = read_instructions(text, None).unwrap_err();
+    (error.to_string(), text[error.span.clone()].to_owned())
+}
+
+#[test]
+fn right_side_rows_run_right_to_left_and_wrong_side_rows_show_their_back() {
+    let text = "Cast on 5\nRow 1 (RS): k3, p2\nRow 2 (WS): k3, p2\n";
+    assert_eq!(rows(text), ["ppkkk", "pppkk"]);
+    let text = "Cast on 5\nRnd 1: k3, p2\nRnd 2: k3, p2\n";
+    assert_eq!(rows(text), ["ppkkk", "ppkkk"]);
+    let text = "Cast on 5\nRow 1 (WS): k3, p2\n";
+    assert_eq!(rows(text), ["pppkk"]);
+}
+
+#[test]
+fn a_row_worked_again_from_the_other_side_is_worked_alike_not_looking_alike() {
+    assert_eq!(rows("Cast on 2\nRow 1: knit\nRows 2-4: rep row 1\n"), ["kk", "pp", "kk", "pp"], "garter");
+    assert_eq!(rows("cast on 2 sts.\nROW 1: K\nrow 2: purl across\nRep rows 1-2 twice"), ["kk"; 6], "stockinette");
+}
+
+#[test]
+fn repeats_of_every_form_fill_the_row() {
+    for row in [
+        "*k2, p2*",
+        "*k2, p2; rep from * to end",
+        "*k2, p2*; rep from * to last 4 sts, k2, p2",
+        "*k2, p2; rep from * 2 more times",
+        "[k2, p2] 3 times",
+        "(k2, p2) to end of row",
+        "k2, p2, *k2, p2*, k2, p2",
+        "k2, p2, [k2, [p] twice] 2 times",
+        "[k 2 sts, purl 2] x3",
+        "k2, (p2, k2) 2 times, p to end",
+        "k2, p2, k2, p2, k to last 2 sts, p2",
+        "k2 p2 *k2 p2*",
+    ] {
+        let text = format!("Cast on 12\nRnd 1: {row}\n");
+        assert_eq!(rows(&text), ["ppkkppkkppkk"], "{row}");
+    }
+}
+
+#[test]
+fn rows_may_come_in_any_order_and_in_lists() {
+    let text = "Cast on 1\nRow 2: k\nRows 1, 3 and 5-6: k # comment\nRow 4 (WS): p\n";
+    assert_eq!(rows(text), ["k", "p", "k", "k", "k", "p"]);
+}
+
+#[test]
+fn counts_that_do_not_work_out_are_named() {
+    let head = "Cast on 10\nRow 1: ";
+    let cases = [
+        (
+            "*k2, p2*",
+            "row 1: `*k2, p2*` repeats 4 stitches, but 10 of the 10 stitches are left for it, which is no multiple",
+            "*k2, p2*",
+        ),
+        ("k4, p4, k4, p1", "row 1: up to `k4` the row takes 12 stitches, but there are 10", "k4"),
+        ("k4, p4", "row 1: the row ends with `p4` after 8 stitches, but there are 10", "p4"),
+        ("*k1*, *p1*", "row 1: `*p1*` stretches to fill the row, which only one part of a row can do here", "*p1*"),
+        ("k2, k2tog, k6", "row 1: `k2tog` is no stitch that wale knows; it knows `k` and `p`", "k2tog"),
+        ("k0", "row 1: a count must be from 1 to 16000000, not `0`", "k0"),
+        ("[] 3 times", "row 1: there is nothing to repeat", "[]"),
+        ("[k1", "row 1: expected the closing bracket, found the end of the line", ""),
+        ("[k1)", "row 1: expected a stitch, found `)`", ")"),
+        (
+            "k to last 11 sts, p11",
+            "row 1: up to `k to last 11 sts` the row takes 11 stitches, but there are 10",
+            "k to last 11 sts",
+        ),
+    ];
+    for (row, message, underlined) in cases {
+        let (found, place) = refused(&format!("{head}{row}\n"));
+        assert_eq!((found.as_str(), place.as_str()), (message, underlined));
+    }
+}
+
+#[test]
+fn texts_that_make_no_sense_as_a_whole_are_refused() {
+    let cases = [
+        ("", "there are no rows"),
+        ("Cast on 3\n", "there are no rows"),
+        ("Row 1: k3\n", "the number of stitches is unknown: no `Cast on` line, and the scene gives no columns"),
+        ("Cast on 3\nCast on 3\n", "the stitches were cast on before"),
+        ("Cast on 0\n", "a count must be from 1 to 16000000, not `0`"),
+        ("Cast on 3\nRow 2: k3\n", "row 1 is missing"),
+        ("Cast on 3\nRow 1: k3\nRow 1: p3\n", "row 1 was given before"),
+        ("Cast on 3\nRow 1: k3\nRnd 2: k3\n", "rows (flat) and rounds cannot be mixed"),
+        (
+            "Cast on 3\nRow 1 (RS): k3\nRow 2 (RS): k3\n",
+            "row 2: it cannot be a right-side (RS) row: sides alternate, and row 1 is a right-side (RS) row",
+        ),
+        (
+            "Cast on 3\nRnd 1 (WS): k3\n",
+            "row 1: it cannot be a wrong-side (WS) row: sides alternate, and rounds are worked from the right side",
+        ),
+        ("Cast on 3\nRow 1: rep rows 1-2\n", "row 1: rows 1–2 are not worked before it"),
+        (
+            "Cast on 3\nRow 1: k\nRow 2: p\nRows 3-5: rep rows 1-2\n",
+            "row 3: 3 rows repeat 2 rows, which is no multiple",
+        ),
+        ("Work even\n", "a line starts with `Cast on`, `Row`, `Rnd`, `Rep rows` or `Bind off`, not with `Work`"),
+        (
+            "Cast on 16000000\nRow 1: k\nRow 2: k\n",
+            "16000000 columns × 2 rows are 32000000 loops, the limit is 16000000",
+        ),
+        (
+            "Cast on 1\nRow 1: k\nRep rows 1-1 16000000 times\nRep rows 1-1 16000000 times",
+            "1 columns × 32000001 rows are 32000001 loops, the limit is 16000000",
+        ),
+    ];
+    for (text, message) in cases {
+        assert_eq!(refused(text).0, message);
+    }
+}
+
+#[test]
+fn nesting_and_size_are_bounded() {
+    let deep = format!("Cast on 3\nRow 1: {}k1{}\n", "[".repeat(9999), "]".repeat(9999));
+    assert!(refused(&deep).0.contains("nested deeper than 32"));
+    // Thirty doublings of a doubling, and so on: refused by arithmetic, never laid out.
+    let bomb = format!("Cast on 3\nRow 1: {}k1{}\n", "[".repeat(30), "] 15000000 times".repeat(30));
+    assert!(refused(&bomb).0.contains("a count must be"));
+    let long = "#".repeat(LARGEST_TEXT + 1);
+    assert!(refused(&long).0.contains("the limit is"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn written_charts_read_back(
+        columns in 1_usize..9,
+        stitches in prop::collection::vec(any::<bool>(), 1..60),
+        working in prop::sample::select(vec![
+            Working::Round,
+            Working::Flat { first_row: Side::RightSide },
+            Working::Flat { first_row: Side::WrongSide },
+        ]),
+    ) {
+        let stitch = |knit: &bool| if *knit { Stitch::Knit } else { Stitch::Purl };
+        let rows: Vec<Vec<Stitch>> = stitches
+            .chunks(columns)
+            .map(|row| row.iter().map(stitch).cycle().take(columns).collect())
+            .collect();
+        let chart = Chart::new(rows).unwrap();
+        let written = read_instructions(&write_instructions(&chart, working), None).unwrap();
+        prop_assert_eq!(written.chart, chart);
+        prop_assert_eq!(written.working, working);
+        prop_assert_eq!(written.cast_on, Some(columns as u64));
+    }
+
+    #[test]
+    fn any_text_is_read_or_refused(text in ".{0,200}") {
+        let _ = read_instructions(&text, Some(8));
+    }
+
+    #[test]
+    fn almost_right_text_is_read_or_refused(
+        words in prop::collection::vec(
+            prop::sample::select(vec![
+                "Cast on 8", "\nRow 1", "\nRow 2 (WS)", "\nRnds 1-2", ":", "*", "[", "]", "(", ")", ",", ";",
+                "k2", "p", "knit", "to end", "to last 2 sts", "rep from *", "3 times", "rep rows 1-2", "x",
+                "\nRep rows 1", "twice", "-", "99999999999999999999", "#", "×",
+            ]),
+            0..30,
+        )
+    ) {
+        if let Err(error) = read_instructions(&words.join(" "), Some(8)) {
+            prop_assert!(words.join(" ").get(error.span.clone()).is_some(), "a span outside the text");
+        }
+    }
+}
