@@ -40,10 +40,7 @@ fn report(name: &str, seconds: f64, bytes: usize, triad: f64) {
 }
 
 fn incomplete(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad: f64) {
-    let settings = IncompleteCholeskySettings {
-        max_domains: domains,
-        ..Default::default()
-    };
+    let settings = IncompleteCholeskySettings { max_domains: domains, ..Default::default() };
     let rounds = rounds_of(matrix.rows());
     let mut factor = IncompleteCholesky::new(Arc::clone(matrix.pattern()), settings);
     let mut outcome = None;
@@ -80,9 +77,8 @@ fn kernels(wales: usize, courses: usize) {
     vector::keep_free(&mut b, &free);
     let mut x = vec![0.0; b.len()];
 
-    let product_bytes = |width| {
-        pattern.block_count() * (25 * width + 4) + rows * (2 * SLOTS * width + size_of::<usize>())
-    };
+    let product_bytes =
+        |width| pattern.block_count() * (25 * width + 4) + rows * (2 * SLOTS * width + size_of::<usize>());
     let seconds = shortest(rounds, || matrix.multiply(&b, &mut x));
     report("product f64", seconds, product_bytes(8), triad);
     let mut narrow = BlockMatrix::<f32>::zeros(Arc::clone(pattern));
@@ -109,11 +105,7 @@ fn kernels(wales: usize, courses: usize) {
     let start = Instant::now();
     let hats = Prolongation::bilinear(&coordinates, 6.0);
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &free).unwrap();
-    println!(
-        "coarse: {} unknowns, set up in {:.0} ms",
-        coarse.unknowns(),
-        start.elapsed().as_secs_f64() * 1e3
-    );
+    println!("coarse: {} unknowns, set up in {:.0} ms", coarse.unknowns(), start.elapsed().as_secs_f64() * 1e3);
     let seconds = shortest(rounds.min(50), || {
         coarse.factor(&matrix).unwrap();
     });
@@ -121,16 +113,12 @@ fn kernels(wales: usize, courses: usize) {
     let seconds = shortest(rounds, || coarse.add(&b, &mut x));
     report("coarse apply", seconds, rows * 100, triad);
 
-    let mut local =
-        IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
+    let mut local = IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
     local.factor(&matrix).unwrap();
     let mut gradient = ConjugateGradient::new(b.len());
     for tolerance in [1e-1, 1e-2] {
-        let settings = ConjugateGradientSettings {
-            relative_tolerance: tolerance,
-            max_iterations: 200,
-            absolute_tolerance: 0.0,
-        };
+        let settings =
+            ConjugateGradientSettings { relative_tolerance: tolerance, max_iterations: 200, absolute_tolerance: 0.0 };
         let mut solve = |name: &str, preconditioner: &mut dyn Preconditioner| {
             let mut iterations = 0;
             let seconds = shortest(2, || {

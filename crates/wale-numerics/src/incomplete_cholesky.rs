@@ -182,11 +182,7 @@ impl Preconditioner for IncompleteCholesky {
 
 impl Half {
     fn new() -> Self {
-        Self {
-            row_start: vec![0],
-            column: Vec::new(),
-            blocks: Vec::new(),
-        }
+        Self { row_start: vec![0], column: Vec::new(), blocks: Vec::new() }
     }
 
     #[inline(always)]
@@ -214,10 +210,7 @@ impl Recent {
             let places = upper.row_start[row + 1] - upper.row_start[first_needed];
             most_places = most_places.max(places as usize);
         }
-        let (rows, places) = (
-            most_rows.max(1).next_power_of_two(),
-            most_places.max(1).next_power_of_two(),
-        );
+        let (rows, places) = (most_rows.max(1).next_power_of_two(), most_places.max(1).next_power_of_two());
         Self {
             upper: vec![[0.0; BLOCK]; places],
             upper_mask: places - 1,
@@ -273,21 +266,14 @@ impl Domain {
 
     fn factor(&mut self, matrix: &BlockMatrix, settings: &IncompleteCholeskySettings) {
         for &shift in &settings.shifts {
-            self.outcome = self
-                .factor_shifted(matrix, shift, settings.smallest_pivot)
-                .map(|()| shift);
+            self.outcome = self.factor_shifted(matrix, shift, settings.smallest_pivot).map(|()| shift);
             if self.outcome.is_ok() {
                 return;
             }
         }
     }
 
-    fn factor_shifted(
-        &mut self,
-        matrix: &BlockMatrix,
-        shift: f64,
-        smallest_pivot: f64,
-    ) -> Result<(), usize> {
+    fn factor_shifted(&mut self, matrix: &BlockMatrix, shift: f64, smallest_pivot: f64) -> Result<(), usize> {
         for row in 0..self.inverse_diagonal.len() {
             let global = self.first_row + row;
             let diagonal = &matrix.blocks()[matrix.pattern().diagonal_position(global)];
@@ -303,11 +289,7 @@ impl Domain {
                 remains[entry] += shift * diagonal[entry];
                 kept &= remains[entry] > smallest_pivot * diagonal[entry];
             }
-            let inverse = if kept {
-                inverse_of_positive(remains, smallest_pivot)
-            } else {
-                None
-            };
+            let inverse = if kept { inverse_of_positive(remains, smallest_pivot) } else { None };
             let inverse = inverse.ok_or(global)?;
             self.recent.diagonal[row & self.recent.diagonal_mask] = inverse;
             self.inverse_diagonal[row] = inverse.map(|v| v as f32);

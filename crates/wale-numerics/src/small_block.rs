@@ -40,10 +40,7 @@ pub(crate) fn transposed(a: &[f64; BLOCK]) -> [f64; BLOCK] {
 ///
 /// By Gauss-Jordan: five divisions, no square root. A pivot counts as zero when it has fallen to
 /// `smallest_pivot` of its own diagonal entry.
-pub(crate) fn inverse_of_positive(
-    block: &[f64; BLOCK],
-    smallest_pivot: f64,
-) -> Option<[f64; BLOCK]> {
+pub(crate) fn inverse_of_positive(block: &[f64; BLOCK], smallest_pivot: f64) -> Option<[f64; BLOCK]> {
     let mut a = *block;
     for k in 0..SLOTS {
         let pivot = a[k * (SLOTS + 1)];

@@ -42,10 +42,7 @@ fn all_preconditioners_lead_to_the_direct_solution() {
     let pattern = matrix.pattern();
     let mut jacobi = BlockJacobi::new(matrix.rows());
     jacobi.factor(&matrix);
-    let cut = IncompleteCholeskySettings {
-        rows_per_domain: 200,
-        ..Default::default()
-    };
+    let cut = IncompleteCholeskySettings { rows_per_domain: 200, ..Default::default() };
     let mut incomplete = IncompleteCholesky::new(Arc::clone(pattern), cut);
     incomplete.factor(&matrix).unwrap();
     let hats = Prolongation::bilinear(&coordinates, 4.0);
@@ -69,18 +66,10 @@ fn all_preconditioners_lead_to_the_direct_solution() {
     check(&mut Additive(&mut jacobi, &mut coarse));
     check(&mut Additive(&mut incomplete, &mut coarse));
     // Each is better than what it is built from.
-    let [_, jacobi, incomplete, jacobi_coarse, incomplete_coarse] = iterations[..] else {
-        unreachable!()
-    };
-    assert!(
-        incomplete < jacobi && jacobi_coarse < jacobi,
-        "{iterations:?}"
-    );
+    let [_, jacobi, incomplete, jacobi_coarse, incomplete_coarse] = iterations[..] else { unreachable!() };
+    assert!(incomplete < jacobi && jacobi_coarse < jacobi, "{iterations:?}");
     // On so few loops the coarse space has nothing to add to IC(0), and must not hurt it.
-    assert!(
-        incomplete_coarse < jacobi_coarse && incomplete_coarse < incomplete + 10,
-        "{iterations:?}"
-    );
+    assert!(incomplete_coarse < jacobi_coarse && incomplete_coarse < incomplete + 10, "{iterations:?}");
 }
 
 #[test]
@@ -179,10 +168,7 @@ fn incomplete_cholesky_is_exact_where_there_is_no_fill() {
     let free = vec![true; matrix.dimension()];
     let b = right_hand_side(&free, 6);
     let expected = direct(&matrix, &free, &b);
-    let mut incomplete = IncompleteCholesky::new(
-        Arc::clone(matrix.pattern()),
-        IncompleteCholeskySettings::default(),
-    );
+    let mut incomplete = IncompleteCholesky::new(Arc::clone(matrix.pattern()), IncompleteCholeskySettings::default());
     let report = incomplete.factor(&matrix).unwrap();
     assert_eq!((report.largest_shift, report.domains), (0.0, 1));
     // Kept in 32 bits.
@@ -197,10 +183,7 @@ fn incomplete_cholesky_is_exact_where_there_is_no_fill() {
 #[test]
 fn domains_drop_what_couples_them() {
     let matrix = chain(100);
-    let cut = IncompleteCholeskySettings {
-        rows_per_domain: 25,
-        ..Default::default()
-    };
+    let cut = IncompleteCholeskySettings { rows_per_domain: 25, ..Default::default() };
     let mut incomplete = IncompleteCholesky::new(Arc::clone(matrix.pattern()), cut);
     assert_eq!(incomplete.factor(&matrix).unwrap().domains, 4);
     let mut uncoupled = matrix.clone();
@@ -318,8 +301,7 @@ fn degenerate_coarse_spaces_do_no_harm() {
 fn two_level(swatch: &Swatch, b: &[f64]) -> (Vec<f64>, ConjugateGradientReport) {
     let matrix = &swatch.matrix;
     let pattern = matrix.pattern();
-    let mut incomplete =
-        IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
+    let mut incomplete = IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
     incomplete.factor(matrix).unwrap();
     let hats = Prolongation::bilinear(&swatch.coordinates, 6.0);
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &swatch.free).unwrap();
