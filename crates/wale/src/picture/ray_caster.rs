@@ -93,10 +93,11 @@ impl<'a> Stage<'a> {
         });
         let key = -0.62 * camera.right + 0.62 * camera.up + 0.60 * camera.back;
         let background = before_shoulder(to_linear(settings.background));
-        // Hair finer than a fortieth of a pixel is not worth its rays.
+        // Hair is seen close up only; it thins out with distance, and far away it is not worth its rays.
         let pixels = radius / camera.height * settings.height as f64;
-        let hair = if settings.hair > 0.0 && pixels > 2.0 {
-            let (curves, colors) = hairs(subject.curves, colors, settings.hair);
+        let density = settings.hair * ((pixels - 4.0) / 6.0).clamp(0.0, 1.0);
+        let hair = if density > 0.0 {
+            let (curves, colors) = hairs(subject.curves, colors, density);
             Tubes::new(&curves, &colors, camera.target)
         } else {
             Tubes::default()

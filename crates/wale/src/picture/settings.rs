@@ -97,7 +97,7 @@ impl Default for Settings {
             color_range: None,
             plies: 3,
             twist: 150.0,
-            hair: 3.0,
+            hair: 2.5,
             ground: Some(DVec3::Z),
             ambient_rays: 1,
             scale_bar: true,
