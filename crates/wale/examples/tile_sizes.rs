@@ -20,6 +20,7 @@ fn main() {
     let ls = 0.107;
     let card = FabricCard {
         loop_length: l,
+        path_ratio: 1.0,
         transition_length: 0.085,
         stitch_length: ls,
         wale_spacing: 0.317,

@@ -31,7 +31,7 @@ pub enum Terms {
 pub struct System {
     /// Where coordinates lie.
     pub coordinates: Coordinates,
-    /// The yarn.
+    /// The yarn, its linear density that of the model's yarn.
     pub yarn: YarnCard,
     /// The fabric card.
     pub card: FabricCard,
@@ -124,7 +124,8 @@ impl System {
         let mut chart_place = network.chart_place.clone();
         chart_place.resize(coordinates.block_count(), [0.0; 2]);
         let mut system = Self {
-            yarn: yarn.clone(),
+            // The model's yarn is shorter than the real one, so that a metre of it weighs more.
+            yarn: YarnCard { linear_density: yarn.linear_density / card.path_ratio, ..yarn.clone() },
             card: card.clone(),
             pattern: Arc::new(BlockPattern::from_pairs(0, [])),
             stretch: Term::new(mechanics.stretch, &chunks),
@@ -257,7 +258,7 @@ impl System {
             work.gradient.fill(0.0);
             let mut out = ChunkOutput { rows, gradient: &mut work.gradient, matrix: None };
             work.energy =
-                self.terms(terms).map(|term| term.accumulate(work.chunk, q, Linearisation::Convex, &mut out)).sum();
+                self.terms(terms).map(|term| term.accumulate(work.chunk, q, Linearisation::CONVEX, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }

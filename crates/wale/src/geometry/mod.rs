@@ -2,6 +2,7 @@
 
 pub mod coloring;
 pub mod curve;
+pub mod obstacle_solid;
 pub(crate) mod parallel_transport;
 mod passes;
 pub mod ply_twist;
@@ -16,6 +17,7 @@ pub mod yarn_geometry;
 
 pub use coloring::{PointScalars, Quantity};
 pub use curve::Curve;
+pub use obstacle_solid::solid_at;
 pub use ply_twist::ply_curves;
 pub use solid::{Solid, SolidShape};
 pub use stretch::segment_stretch;

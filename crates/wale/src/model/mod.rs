@@ -8,7 +8,7 @@ pub mod network;
 pub mod plan;
 pub mod selection;
 
-pub use card::{FabricCard, YarnCard};
+pub use card::{FabricCard, LoopProportions, YarnCard};
 pub use frame::Frame;
 pub use ids::{NodeId, PassId, StitchId, YarnId};
 pub use motion::{Motion, Pose};

@@ -1,6 +1,8 @@
 //! The plan of a run: settings, obstacles and grips as plain SI numbers, whatever file they came from.
 
 use glam::{DQuat, DVec3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{Motion, Selection};
 
@@ -76,7 +78,8 @@ pub struct Simulation {
 }
 
 /// Which linear solver works inside Newton's method.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum LinearSolver {
     /// The one that is the faster for the fabric's size.
     #[default]
@@ -192,7 +195,8 @@ pub struct Output {
 }
 
 /// Which frames are drawn.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Pictures {
     /// None.
     None,
@@ -204,7 +208,8 @@ pub enum Pictures {
 }
 
 /// A format that other programs read.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum ExportFormat {
     /// USD BasisCurves with time samples (`.usda`).
     Usd,

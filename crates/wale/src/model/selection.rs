@@ -1,6 +1,8 @@
 //! Which nodes of a fabric a grip holds.
 
 use glam::DVec3;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -44,7 +46,8 @@ pub enum Selection {
 }
 
 /// An edge of a fabric as seen from the front.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
 pub enum Edge {
     /// The first column.
     Left,

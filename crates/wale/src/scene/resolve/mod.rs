@@ -1,0 +1,125 @@
+//! From what a scene file says to plain SI numbers: presets, defaults, and every check that needs more than one value.
+
+mod chart;
+mod fabric;
+mod happening;
+mod plan;
+mod yarn;
+
+use std::path::{Path, PathBuf};
+
+use glam::{DQuat, DVec3};
+
+use super::dimensions::Ratio;
+use super::error::{Complaint, SceneError};
+use super::schema::{AxisAngle, Direction, FabricText, PresetName, SceneText, YarnText};
+use super::units::{Bounds, Dimension, Quantity};
+use super::{SCHEMA, Scene};
+use crate::model::Plan;
+
+/// What is wrong, in this file or in one that it names.
+pub(super) enum Failure {
+    Here(Complaint),
+    Elsewhere(Box<SceneError>),
+}
+
+impl From<Complaint> for Failure {
+    fn from(complaint: Complaint) -> Self {
+        Self::Here(complaint)
+    }
+}
+
+/// The scene, and the files that it reads. `directory` holds them; none may be read if `None`.
+pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene, Vec<PathBuf>), Failure> {
+    if text.schema != SCHEMA {
+        return Err(Complaint::new("schema", format!("schema {} is not one that this wale reads", text.schema))
+            .why(format!("it reads schema {SCHEMA}"))
+            .mend(format!("write schema = {SCHEMA}, or use a newer wale"))
+            .into());
+    }
+    let said = text.yarn.clone().unwrap_or_default();
+    let (yarn_base, fabric_base) = base(&said, &text.fabric)?;
+    let (yarn, yarn_color) = yarn::resolve(&said, &yarn_base)?;
+    let fabric = fabric::resolve(&text.fabric, &fabric_base, &yarn)?;
+    let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
+    let placement = fabric::placement(&text.fabric)?;
+    let simulation = plan::simulation(&text.simulation.clone().unwrap_or_default())?;
+    let output = plan::output(&text.output.clone().unwrap_or_default());
+    let obstacles = happening::obstacles(&text.obstacle, simulation.duration)?;
+    let size = [stitches.chart.row_count(), stitches.chart.column_count()];
+    let grips = happening::grips(&text.grip, simulation.duration, placement.center, size)?;
+    let plan = Plan { placement, simulation, obstacles, grips, output };
+    let title = text.title.clone().unwrap_or_default();
+    let scene = Scene { title, yarn, yarn_color, fabric, chart: stitches.chart, working: stitches.working, plan };
+    Ok((scene, stitches.inputs))
+}
+
+/// What stands behind the numbers of the scene: the paper's table, or a preset.
+fn base(yarn: &YarnText, fabric: &FabricText) -> Result<(YarnText, FabricText), Complaint> {
+    match (&fabric.paper_table_1, yarn.preset) {
+        (Some(_), Some(_)) => {
+            Err(Complaint::new("yarn.preset", "the yarn has a preset and the fabric a paper_table_1")
+                .why("both say everything about the yarn")
+                .mend("keep one of them"))
+        }
+        (Some(table), None) => Ok(fabric::from_paper_table_1(table)),
+        (None, preset) => {
+            let preset = preset.unwrap_or(PresetName::WorstedWool).read();
+            Ok((preset.yarn, preset.fabric))
+        }
+    }
+}
+
+fn si<D: Dimension, B: Bounds>(quantity: Option<Quantity<D, B>>) -> Option<f64> {
+    quantity.map(Quantity::si)
+}
+
+fn vector<D: Dimension, B: Bounds>(parts: &[Quantity<D, B>; 3]) -> DVec3 {
+    DVec3::from_array(parts.map(Quantity::si))
+}
+
+/// A direction of unit length; one that is of unit length keeps its bits.
+fn unit(parts: &Direction, path: &str) -> Result<DVec3, Complaint> {
+    let direction = vector(parts);
+    let length = direction.length();
+    if length == 0.0 || !length.is_finite() {
+        return Err(Complaint::new(path, "a direction cannot be zero").mend("write for instance [0, 0, 1]"));
+    }
+    Ok(if is_one(length) { direction } else { direction / length })
+}
+
+fn is_one(length: f64) -> bool {
+    (length - 1.0).abs() < 1e-14
+}
+
+fn rotation(text: &AxisAngle, path: &str) -> Result<DQuat, Complaint> {
+    match (text.quaternion, &text.axis, text.angle) {
+        (Some(parts), None, None) => {
+            let parts = parts.map(|part: Quantity<Ratio>| part.si());
+            let quaternion = DQuat::from_array(parts);
+            let length = quaternion.length();
+            if length == 0.0 || !length.is_finite() {
+                let complaint = Complaint::new(format!("{path}.quaternion"), "a quaternion cannot be zero");
+                return Err(complaint.mend("write for instance [0, 0, 0, 1]"));
+            }
+            Ok(if is_one(length) { quaternion } else { quaternion.normalize() })
+        }
+        (None, Some(axis), Some(angle)) => Ok(DQuat::from_axis_angle(unit(axis, &format!("{path}.axis"))?, angle.si())),
+        _ => Err(Complaint::new(path, "a rotation is an axis and an angle, or a quaternion")
+            .mend("write for instance { axis = [0, 0, 1], angle = \"45 deg\" }")),
+    }
+}
+
+/// Complains unless exactly one of some keys is there.
+fn exactly_one(path: &str, keys: &[(&str, bool)]) -> Result<(), Complaint> {
+    let names = || keys.iter().map(|(key, _)| *key).collect::<Vec<_>>().join(", ");
+    let mut there = keys.iter().filter(|(_, there)| *there).map(|(key, _)| *key);
+    match (there.next(), there.next()) {
+        (Some(_), None) => Ok(()),
+        (None, _) => Err(Complaint::new(path, format!("none of {} is given", names())).mend("give one of them")),
+        (Some(first), Some(second)) => {
+            let what = format!("{first} and {second} are both given");
+            Err(Complaint::new(format!("{path}.{second}"), what).mend(format!("keep one of {}", names())))
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! Good scenes read, bad ones say what is wrong and where, and what is written reads back.
+
+use super::*;
+use crate::model::{Drive, Edge, Selection, Shape};
+use crate::pattern::Side;
+use glam::DVec3;
+use miette::Diagnostic;
+use proptest::prelude::*;
+
+const CHART: &str = "[fabric.chart]\npattern = \"garter\"\ncolumns = 6\nrows = 4\n";
+
+fn read(rest: &str) -> Scene {
+    Scene::from_text(&format!("schema = 1\n{rest}"), "scene.toml").unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn five_lines_are_a_scene() {
+    let scene = read(CHART);
+    assert_eq!((scene.chart.column_count(), scene.chart.row_count()), (6, 4));
+    assert_eq!(scene.working, Working::default());
+    assert_eq!(scene.yarn.linear_density, 500e-6);
+    // B4: k_w L ℓ = 2.1 k_b.
+    let card = &scene.fabric;
+    let wrap = card.wrapping_stiffness * card.stitch_length * card.loop_length / scene.yarn.bending_stiffness;
+    assert!((wrap - 2.1).abs() < 1e-12);
+    assert!((card.loop_length - 0.752 * 0.02).abs() < 1e-15);
+    assert_eq!(scene.plan.simulation.gravity, DVec3::new(0.0, 0.0, -9.80665));
+}
+
+#[test]
+fn the_template_is_a_scene_and_says_the_defaults_in_its_comments() {
+    let scene = Scene::from_text(template(), "new.toml").unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(scene.plan.obstacles.len(), 1);
+    // Every key that is commented out must be one that exists: with all of them in place of the others it still reads.
+    let opened: String = template()
+        .lines()
+        .filter(|line| !line.starts_with("pattern ="))
+        .map(|line| {
+            let key = line.strip_prefix("# ").filter(|rest| {
+                let code = rest.starts_with([' ', ']', '[']) || rest.contains(" = ");
+                code && !rest.contains("file = ") && !rest.starts_with("worked")
+            });
+            format!("{}\n", key.unwrap_or(line))
+        })
+        .collect();
+    Scene::from_text(&opened, "opened.toml").unwrap_or_else(|error| panic!("{error}\n{opened}"));
+}
+
+#[test]
+fn a_yarn_of_ones_own_goes_before_the_preset() {
+    let scene = read(&format!("[yarn]\npreset = \"thick-acrylic\"\npacking = 0.5\nfibre_density = 1180\n{CHART}"));
+    let area = std::f64::consts::PI * scene.yarn.radius * scene.yarn.radius;
+    assert!((scene.yarn.linear_density / area - 590.0).abs() < 1e-9, "packing replaces the preset's diameter");
+    let scene =
+        read(&format!("[yarn]\ndiameter = \"1 mm\"\nelastic_modulus = \"10 MPa\"\nbending_modulus = 1e-3\n{CHART}"));
+    assert!((scene.yarn.stretch_stiffness - 7.853_981_633_974_483).abs() < 1e-12);
+    assert!((scene.yarn.bending_stiffness - 7.853_981_633_974_483e-10).abs() < 1e-22);
+}
+
+#[test]
+fn the_papers_table_is_taken_in_true_units() {
+    let table = "[fabric.paper_table_1]\nloop_width = \"3 mm\"\nR = \"0.75 mm\"\nY = 1e7\nB = 1e-3\nk_w = 1e-2\n";
+    let scene = read(&format!("{table}mu = 0.3\nalpha = 10\nbeta = 0.01\n{CHART}"));
+    assert!((scene.yarn.stretch_stiffness - 17.67).abs() < 0.01);
+    assert!((scene.yarn.bending_stiffness - 1.767e-9).abs() < 1e-12);
+    assert_eq!(scene.fabric.wrapping_stiffness, 1e-2);
+    assert_eq!(scene.fabric.wale_spacing, 3e-3);
+    assert_eq!((scene.yarn.mass_damping, scene.yarn.stiffness_damping), (10.0, 0.01));
+}
+
+#[test]
+fn stitch_size_may_stand_in_place_of_the_loop_length() {
+    let scene = read(&format!("[fabric]\nwale_spacing = \"5 mm\"\n{CHART}"));
+    assert!((scene.fabric.loop_length - 5e-3 / 0.317).abs() < 1e-15);
+    assert_eq!(scene.fabric.wale_spacing, 5e-3);
+}
+
+#[test]
+fn charts_come_from_symbols_with_a_legend_and_repeat() {
+    let scene = read(
+        "[fabric.chart]\nsymbols = [\"ox\", \"xx\"]\nlegend = { x = \"knit\", o = \"purl\" }\ncolumns = 3\nworked = \"round\"\n",
+    );
+    assert_eq!(format!("{:?}", scene.chart), "\npkp\nkkk");
+    assert_eq!(scene.working, Working::Round);
+    let scene = read(&format!("{CHART}first_row = \"wrong_side\"\n"));
+    assert_eq!(scene.working, Working::Flat { first_row: Side::WrongSide });
+}
+
+#[test]
+fn what_happens_is_read_to_motions() {
+    let scene = read(&format!(
+        "{CHART}[simulation]\nduration = 2\n\
+         [[obstacle]]\nbox = {{ center = [0, 0, 0], size = [2, 4, 6] }}\n\
+         motion = {{ turn = {{ axis = [0, 0, 2], rate = \"90 deg/s\" }} }}\n\
+         [[grip]]\nselect = {{ edge = \"left\" }}\n\
+         [[grip]]\nselect = {{ rows = [2, 3], columns = [1, 1] }}\naxes = \"xz\"\nfrom = 0.5\n\
+         motion = {{ velocity = [\"20 mm/s\", 0, 0], until = 1.5 }}\n\
+         [[grip]]\nselect = {{ corner = \"top_right\" }}\npull = {{ force = [0, \"5 cN\", 0], ramp = 0.1 }}\nuntil = 1\n"
+    ));
+    let obstacle = &scene.plan.obstacles[0];
+    assert!(matches!(obstacle.shape, Shape::Block { half_size, .. } if half_size == DVec3::new(1.0, 2.0, 3.0)));
+    assert!((obstacle.motion.keys[1].rotation - DVec3::Z * std::f64::consts::PI).length() < 1e-14);
+    assert_eq!(scene.plan.grips[0].nodes, Selection::Edge { edge: Edge::Left, depth: 1 });
+    assert_eq!(scene.plan.grips[1].nodes, Selection::Loops { rows: Some(1..3), columns: Some(0..1) });
+    assert_eq!(scene.plan.grips[1].axes, [true, false, true]);
+    let Drive::Follow(motion) = &scene.plan.grips[1].drive else { panic!("follows a motion") };
+    assert_eq!((motion.keys[0].time, motion.keys[1].time), (0.5, 1.5));
+    assert!((motion.keys[1].translation.x - 0.02).abs() < 1e-15);
+    assert!(scene.plan.grips[2].holds(0.9) && !scene.plan.grips[2].holds(1.0));
+}
+
+/// The scene, what is underlined, a part of what is said, a part of the mend, and the class.
+type Bad = (&'static str, &'static str, &'static str, &'static str, ErrorClass);
+
+#[test]
+fn bad_scenes_name_the_place_the_reason_and_the_mend() {
+    use ErrorClass::{BadInput as Input, ResourceLimit as Limit};
+    let cases: &[Bad] = &[
+        ("schema = 1\n[fabrik.chart]\n", "fabrik", "unknown key `fabrik`", "did you mean `fabric`?", Input),
+        (
+            "schema = 1\n[simulation]\ndurration = 3\n[fabric]",
+            "durration",
+            "unknown key",
+            "did you mean `duration`?",
+            Input,
+        ),
+        ("schema = 1\n[yarn]\ndiameter = \"-1 mm\"\n[fabric]", "\"-1 mm\"", "must be positive", "", Input),
+        ("schema = 1\n[yarn]\ndiameter = \"1e30 mm\"\n[fabric]", "\"1e30 mm\"", "absurd", "", Input),
+        ("schema = 1\n[yarn]\ndiameter = nan\n[fabric]", "nan", "finite", "\"0.5 mm\"", Input),
+        ("schema = 1\n[yarn]\ndiameter = inf\n[fabric]", "inf", "finite", "", Input),
+        ("schema = 1\n[yarn]\ndiameter = \"0.5\"\n[fabric]", "\"0.5\"", "has no unit", "\"0.5 mm\"", Input),
+        ("schema = 1\n[yarn]\ndiameter = \"0.5 N\"\n[fabric]", "\"0.5 N\"", "`N` is no unit of a length", "", Input),
+        ("schema = 1\n[yarn]\ndiameter = true\n[fabric]", "true", "invalid type", "", Input),
+        ("schema = 1\n[yarn]\ndiameter = \"30 mm\"\n[fabric]", "\"30 mm\"", "kg/m³", "check the units", Input),
+        (
+            "schema = 1\n[yarn]\npreset = \"worstd-wool\"\n[fabric]",
+            "\"worstd-wool\"",
+            "unknown value",
+            "did you mean `worsted-wool`?",
+            Input,
+        ),
+        ("schema = 1\n[yarn]\ncolor = \"red\"\n[fabric]", "\"red\"", "no colour", "#8a3324", Input),
+        ("schema = 1\n[yarn]\ndiameter = 1e-3\npacking = 0.3\n[fabric]", "0.3", "both given", "keep one", Input),
+        ("schema = 2\n[fabric]", "2", "schema 2", "schema = 1", Input),
+        ("[fabric]", "", "`schema` is missing", "schema = 1", Input),
+        ("schema = 1", "", "`fabric` is missing", "[fabric.chart]", Input),
+        ("schema = 1\n[fabric]\n", "fabric", "no chart", "[fabric.chart]", Input),
+        ("schema = 1\nschema = 1\n", "schema", "duplicate key", "", Input),
+        ("schema = \n", "", "", "", Input),
+        ("schema = 1\n[fabric.chart]\n", "chart", "none of pattern, symbols, file", "", Input),
+        (
+            "schema = 1\n[fabric.chart]\npattern = \"gartr\"\n",
+            "\"gartr\"",
+            "no pattern",
+            "did you mean \"garter\"?",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\npattern = \"garter\"\nrows = 3\n",
+            "chart",
+            "needs columns",
+            "columns = 20",
+            Input,
+        ),
+        ("schema = 1\n[fabric.chart]\npattern = \"rib 0x0\"\n", "\"rib 0x0\"", "empty", "", Input),
+        ("schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = 0\nrows = 3\n", "0", "at least 1", "", Input),
+        ("schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = -3\nrows = 3\n", "-3", "integer", "", Input),
+        ("schema = 1\n[fabric.chart]\nsymbols = []\n", "[]", "no rows", "", Input),
+        (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"kk\", \"\", \"kk\"]\n",
+            "\"\"",
+            "row 2 of the chart is empty",
+            "",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"kkk\", \"kk\"]\n",
+            "\"kkk\"",
+            "row 2 of the chart has 3 stitches, row 1 (the lowest) has 2",
+            "",
+            Input,
+        ),
+        ("schema = 1\n[fabric.chart]\nsymbols = [\"kxk\"]\n", "x", "`x` in row 1 is not in the legend", "", Input),
+        (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"kk\"]\nlegend = { kk = \"knit\" }\n",
+            "\"knit\"",
+            "not one symbol",
+            "",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\npattern = \"seed\"\nsymbols = [\"k\"]\n",
+            "[\"k\"]",
+            "both given",
+            "keep one of pattern, symbols, file",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\npattern = \"seed\"\ncolumns = 100000000\nrows = 100000000\n",
+            "100000000",
+            "100000000 columns × 100000000 rows are 10000000000000000 loops, the limit is 16000000",
+            "smaller",
+            Limit,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\npattern = \"seed\"\ncolumns = 18446744073709551615\nrows = 3\n",
+            "18446744073709551615",
+            "",
+            "",
+            Limit,
+        ),
+        (
+            "schema = 1\n[simulation]\nduration = 1e7\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "1e7",
+            "frames",
+            "shorter",
+            Limit,
+        ),
+        (
+            "schema = 1\n[simulation]\nlargest_step = 1e-9\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "1e-9",
+            "longer than the largest",
+            "",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric]\nloop_length = \"2 mm\"\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "\"2 mm\"",
+            "thick",
+            "longer loop",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric]\nstitch_length = \"6 mm\"\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "\"6 mm\"",
+            "leave too little",
+            "",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric]\nbend_angle_leg = 90\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "90",
+            "rest angle",
+            "\"90 deg\"",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\nfile = \"../../etc/passwd\"\n",
+            "\"../../etc/passwd\"",
+            "not a path inside",
+            "rib.knit",
+            Input,
+        ),
+        ("schema = 1\n[fabric.chart]\nfile = \"/etc/passwd\"\n", "\"/etc/passwd\"", "not a path inside", "", Input),
+        ("schema = 1\n[fabric.chart]\nfile = 'C:\\rib'\n", "'C:\\rib'", "not a path inside", "", Input),
+        ("schema = 1\n[fabric.chart]\nfile = \"\"\n", "\"\"", "not a path inside", "", Input),
+    ];
+    for (text, underlined, what, mend, class) in cases {
+        let error = Scene::from_text(text, "scene.toml").expect_err(text);
+        assert_eq!(error.underlined().unwrap_or_default(), *underlined, "{text}\n{error}");
+        assert!(error.what().contains(what), "{text}\n{error}");
+        assert!(error.mend().unwrap_or_default().contains(mend), "{text}\n{error}\n{:?}", error.mend());
+        assert_eq!(error.class(), *class, "{text}\n{error}");
+        assert!(error.labels().is_some() || error.line_and_column().is_none());
+    }
+}
+
+#[test]
+fn bad_happenings_name_the_place_and_the_reason() {
+    let cases = [
+        ("[[obstacle]]\n", "obstacle", "none of plane"),
+        ("[[obstacle]]\nsphere = { center = [0, 0, 0], radius = 0 }\n", "0", "must be positive"),
+        ("[[obstacle]]\nsphere = { center = [0, 0], radius = 1 }\n", "[0, 0]", "invalid length"),
+        ("[[obstacle]]\nplane = { point = [0, 0, 0], normal = [0, 0, 0] }\n", "[0, 0, 0]", "cannot be zero"),
+        (
+            "[[obstacle]]\nname = \"a\"\nplane = { point = [0, 0, 0] }\n[[obstacle]]\nname = \"a\"\nplane = { point = [0, 0, 0] }\n",
+            "\"a\"",
+            "another obstacle",
+        ),
+        ("[[obstacle]]\nplane = { point = [0, 0, 0] }\nmotion = {}\n", "motion", "needs velocity"),
+        (
+            "[[obstacle]]\nplane = { point = [0, 0, 0] }\nmotion = { keys = [{ time = 1 }, { time = 1 }] }\n",
+            "1",
+            "not in order of time",
+        ),
+        ("[[obstacle]]\nplane = { point = [0, 0, 0] }\nmotion = { keys = [] }\n", "[]", "at least one key"),
+        ("[[grip]]\n", "grip", "`select` is missing"),
+        ("[[grip]]\nselect = {}\n", "select", "none of edge"),
+        ("[[grip]]\nselect = { edge = \"rigth\" }\n", "\"rigth\"", "unknown value"),
+        ("[[grip]]\nselect = { rows = [0, 2] }\n", "[0, 2]", "rows 0 to 2"),
+        ("[[grip]]\nselect = { rows = [1, 5] }\n", "[1, 5]", "rows 1 to 5"),
+        ("[[grip]]\nselect = { all = true, depth = 2 }\n", "2", "only edges and corners"),
+        ("[[grip]]\nselect = { edge = \"top\", depth = 7 }\n", "7", "depth of 7"),
+        ("[[grip]]\nselect = { all = true }\naxes = \"xw\"\n", "\"xw\"", "axes are x, y and z"),
+        ("[[grip]]\nselect = { all = true }\naxes = \"\"\n", "\"\"", "at least one axis"),
+        ("[[grip]]\nselect = { all = true }\nfrom = 2\nuntil = 1\n", "1", "lets go before"),
+        (
+            "[[grip]]\nselect = { all = true }\naxes = \"x\"\nmotion = { turn = { axis = [1, 0, 0], rate = 1 } }\n",
+            "\"x\"",
+            "holds all three axes",
+        ),
+        (
+            "[[grip]]\nselect = { all = true }\nmotion = { keys = [{ time = 0, translation = [1, 0, 0] }] }\n",
+            "{ time = 0, translation = [1, 0, 0] }",
+            "would jump",
+        ),
+        ("[[grip]]\nselect = { region = { low = [0, 0, 1], high = [1, 1, 0] } }\n", "[1, 1, 0]", "region is empty"),
+    ];
+    for (rest, underlined, what) in cases {
+        let text = format!("schema = 1\n{CHART}{rest}");
+        let error = Scene::from_text(&text, "scene.toml").expect_err(rest);
+        assert!(error.what().contains(what), "{rest}\n{error}");
+        // A table without text of its own is underlined by its key or, by the reader, its header.
+        let shown = error.underlined().unwrap_or_default();
+        assert!(
+            shown.trim_matches(['[', ']', '{', '}']) == underlined.trim_matches(['[', ']', '{', '}']),
+            "{error}: {shown}"
+        );
+    }
+}
+
+#[test]
+fn chart_files_are_read_from_the_scenes_folder_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let inner = folder.path().join("scenes");
+    std::fs::create_dir(&inner).unwrap();
+    let scene_with = |chart: &str| {
+        let path = inner.join("scene.toml");
+        std::fs::write(&path, format!("schema = 1\n[fabric.chart]\n{chart}\n")).unwrap();
+        Scene::read_with_inputs(&path)
+    };
+    std::fs::write(inner.join("rib.knit"), "Cast on 4\nRnd 1: *k1, p1*\n").unwrap();
+    let read = scene_with("file = \"rib.knit\"\nrows = 3").unwrap();
+    assert_eq!(format!("{:?}", read.scene.chart), "\npkpk\npkpk\npkpk");
+    assert_eq!(read.scene.working, Working::Round);
+    assert_eq!(read.inputs.len(), 2);
+
+    std::fs::write(inner.join("bad.knit"), "Cast on 5\n# a rib\nRow 1: k1, *k1, p1, k1*\n").unwrap();
+    let error = scene_with("file = \"bad.knit\"").unwrap_err();
+    assert!(error.file().ends_with("bad.knit"));
+    assert_eq!(error.line_and_column(), Some((3, 12)));
+    assert_eq!(error.underlined(), Some("*k1, p1, k1*"));
+    assert!(error.what().contains("repeats 3 stitches, but 4 of the 5"), "{error}");
+
+    for (chart, what) in [
+        ("file = \"none.knit\"", "cannot be read"),
+        ("file = \".\"", "is no file"),
+        ("file = \"rib.knit\"\ncolumns = 6", "casts on 4"),
+        ("file = \"rib.knit\"\nworked = \"flat\"", "in the round"),
+        ("file = \"rib.knit\"\nfirst_row = \"wrong_side\"", "which side"),
+    ] {
+        let error = scene_with(chart).unwrap_err();
+        assert!(error.what().contains(what), "{chart}: {error}");
+        assert_eq!(error.class(), ErrorClass::BadInput);
+    }
+    std::fs::write(inner.join("odd.knit"), "Cast on 4\nRow 1: k\n").unwrap();
+    assert!(scene_with("file = \"odd.knit\"\nrows = 3").unwrap_err().what().contains("repeated flat"));
+    std::fs::write(inner.join("bytes.knit"), [0xff, 0xfe]).unwrap();
+    assert!(scene_with("file = \"bytes.knit\"").unwrap_err().what().contains("UTF-8"));
+    #[cfg(unix)]
+    {
+        std::fs::write(folder.path().join("secret.knit"), "Cast on 4\nRow 1: k\n").unwrap();
+        std::os::unix::fs::symlink("../secret.knit", inner.join("link.knit")).unwrap();
+        assert!(scene_with("file = \"link.knit\"").unwrap_err().what().contains("leads out"));
+    }
+    let missing = Scene::read(&inner.join("missing.toml")).unwrap_err();
+    assert_eq!((missing.class(), missing.class().exit_code()), (ErrorClass::BadInput, 3));
+    assert!(Scene::read(&inner).is_err(), "a folder is no scene");
+}
+
+#[test]
+fn the_schema_describes_every_table() {
+    let schema = json_schema();
+    let text = schema.to_string();
+    for word in ["paper_table_1", "frame_rate", "Coefficient of friction between yarns", "cast-on", "anyOf"] {
+        assert!(text.contains(word), "{word}");
+    }
+    assert_eq!(schema["additionalProperties"], false);
+    assert_eq!(schema["required"], serde_json::json!(["schema", "fabric"]));
+}
+
+fn resolved_again(scene: &Scene) -> Scene {
+    let text = scene.resolved_toml().unwrap();
+    Scene::from_text(&text, "resolved.toml").unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+#[test]
+fn resolved_scenes_of_every_kind_read_back_the_same() {
+    for text in [
+        template().to_owned(),
+        format!("schema = 1\n[fabric]\nstance = \"hanging\"\ncenter = [0.1, \"2 mm\", 3]\n{CHART}worked = \"round\"\n"),
+        format!(
+            "schema = 1\ntitle = \"a \\\"title\\\"\"\n{CHART}[output]\nexports = [\"vtk\", \"usd\", \"vtk\"]\n\
+             [[obstacle]]\nplane = {{ point = [0, 0, 0], normal = [1, 2, 3] }}\n\
+             [[obstacle]]\ncapsule = {{ a = [0, 0, 0], b = [1, 0, 0], radius = \"1 in\" }}\n\
+             motion = {{ velocity = [0.1, 0, 0], turn = {{ axis = [1, 1, 0], rate = \"7 rpm\" }}, from = 0.1 }}\n\
+             [[obstacle]]\nbox = {{ center = [0, 0, 0], size = [1, 2, 0.3], rotation = {{ axis = [1, 2, 3], angle = \"33 deg\" }} }}\n\
+             [[grip]]\nselect = {{ corner = \"bottom_left\", depth = 2 }}\naxes = \"y\"\nuntil = 0.7\n\
+             [[grip]]\nselect = {{ region = {{ low = [0, 0, 0], high = [1, 1, 1] }} }}\npull = {{ force = [1, 0, 0] }}\n\
+             [[grip]]\nselect = {{ columns = [2, 3] }}\nmotion = {{ keys = [{{ time = 0.3, translation = [1, 0, 0] }}] }}\n\
+             [[grip]]\nselect = {{ all = true }}\n"
+        ),
+    ] {
+        let scene = Scene::from_text(&text, "scene.toml").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(resolved_again(&scene), scene);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn resolved_numbers_read_back_to_the_same_bits(
+        loop_length in 3e-3..1.0_f64,
+        spacing in 1e-3..1e-2_f64,
+        angle in -3.1..3.1_f64,
+        axis in prop::array::uniform3(-1.0..1.0_f64),
+        center in prop::array::uniform3(-10.0..10.0_f64),
+        gravity in prop::array::uniform3(-10.0..10.0_f64),
+        tex in 50.0..2000.0_f64,
+        knits in prop::collection::vec(any::<bool>(), 12),
+        seed in any::<u32>(),
+    ) {
+        prop_assume!(DVec3::from_array(axis).length() > 1e-3);
+        let row: String = knits.iter().map(|knit| if *knit { 'k' } else { 'p' }).collect();
+        let text = format!(
+            "schema = 1\n[yarn]\nlinear_density = \"{tex} tex\"\n\
+             [fabric]\nloop_length = {loop_length}\nwale_spacing = {spacing}\nwrapping_angle_leg = {angle}\n\
+             center = {center:?}\nrotation = {{ axis = {axis:?}, angle = {angle} }}\n\
+             [fabric.chart]\nsymbols = [\"{}\", \"{}\", \"{}\"]\n\
+             [simulation]\ngravity = {gravity:?}\nseed = {seed}\n\
+             [[obstacle]]\nplane = {{ point = {center:?}, normal = {axis:?} }}\n\
+             motion = {{ velocity = {gravity:?}, turn = {{ axis = {axis:?}, rate = {angle} }} }}\n",
+            &row[..4], &row[4..8], &row[8..]
+        );
+        match Scene::from_text(&text, "scene.toml") {
+            Ok(scene) => prop_assert_eq!(resolved_again(&scene), scene),
+            // Short loops of thick yarn are refused.
+            Err(error) => prop_assert!(error.what().contains("thick") || error.what().contains("leave too little"), "{}", error),
+        }
+    }
+
+    #[test]
+    fn any_text_is_read_or_refused(text in ".{0,300}") {
+        let _ = Scene::from_text(&text, "scene.toml");
+    }
+
+    #[test]
+    fn spoilt_scenes_are_read_or_refused(at in 0_usize..4000, length in 0_usize..20, with in ".{0,6}") {
+        let text = template();
+        let start = (0..=at.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0);
+        let end = (start + length..=text.len()).find(|&i| text.is_char_boundary(i)).unwrap_or(text.len());
+        let spoilt = format!("{}{with}{}", &text[..start], &text[end..]);
+        if let Err(error) = Scene::from_text(&spoilt, "scene.toml") {
+            prop_assert!(!error.what().is_empty());
+            let drawn = format!("{:?}", miette::Report::new(error));
+            prop_assert!(drawn.contains("scene.toml"), "{}", drawn);
+        }
+    }
+}

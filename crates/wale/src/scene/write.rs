@@ -1,0 +1,231 @@
+//! A scene written out in full, in SI units: reading it back gives the same scene.
+
+use glam::{DQuat, DVec3};
+
+use super::schema::{
+    Axes, AxisAngle, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText, KeyText,
+    MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText, SimulationText,
+    SphereText, Worked, YarnText,
+};
+use super::units::{Bounds, Dimension, Quantity};
+use super::{SCHEMA, Scene};
+use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
+use crate::pattern::symbols::write_symbols;
+use crate::pattern::{Side, Working};
+
+/// A number that is out of the bounds of the scene format, in words.
+type Written<T> = Result<T, String>;
+
+/// What a scene file would have to say to give this scene.
+pub(super) fn text_of(scene: &Scene) -> Written<SceneText> {
+    Ok(SceneText {
+        schema: SCHEMA,
+        title: Some(scene.title.clone()),
+        yarn: Some(yarn(scene)?),
+        fabric: fabric(scene)?,
+        simulation: Some(simulation(scene)?),
+        output: Some(output(scene)?),
+        obstacle: scene.plan.obstacles.iter().map(obstacle).collect::<Written<_>>()?,
+        grip: scene.plan.grips.iter().map(grip).collect::<Written<_>>()?,
+    })
+}
+
+fn of<D: Dimension, B: Bounds>(value: f64) -> Written<Quantity<D, B>> {
+    Quantity::new(value)
+}
+
+fn some<D: Dimension, B: Bounds>(value: f64) -> Written<Option<Quantity<D, B>>> {
+    of(value).map(Some)
+}
+
+fn vector<D: Dimension, B: Bounds>(value: DVec3) -> Written<[Quantity<D, B>; 3]> {
+    Ok([of(value.x)?, of(value.y)?, of(value.z)?])
+}
+
+fn quaternion(value: DQuat) -> Written<Option<AxisAngle>> {
+    let [x, y, z, w] = value.to_array();
+    Ok(Some(AxisAngle { axis: None, angle: None, quaternion: Some([of(x)?, of(y)?, of(z)?, of(w)?]) }))
+}
+
+fn yarn(scene: &Scene) -> Written<YarnText> {
+    let card = &scene.yarn;
+    Ok(YarnText {
+        preset: None,
+        linear_density: some(card.linear_density)?,
+        diameter: some(2.0 * card.radius)?,
+        packing: None,
+        fibre_density: None,
+        stretch_stiffness: some(card.stretch_stiffness)?,
+        elastic_modulus: None,
+        bending_stiffness: some(card.bending_stiffness)?,
+        bending_modulus: None,
+        friction: some(card.friction_coefficient)?,
+        mass_damping: some(card.mass_damping)?,
+        stiffness_damping: some(card.stiffness_damping)?,
+        color: Some(Color(scene.yarn_color)),
+        plies: Some(card.plies),
+        twist: some(card.twist)?,
+    })
+}
+
+fn fabric(scene: &Scene) -> Written<FabricText> {
+    let card = &scene.fabric;
+    let placement = scene.plan.placement;
+    Ok(FabricText {
+        loop_length: None,
+        path_ratio: some(card.path_ratio)?,
+        model_loop_length: some(card.loop_length)?,
+        wale_spacing: some(card.wale_spacing)?,
+        course_spacing: some(card.course_spacing)?,
+        transition_length: some(card.transition_length)?,
+        stitch_length: some(card.stitch_length)?,
+        wrapping_stiffness: some(card.wrapping_stiffness)?,
+        wrapping_angle_course: some(card.wrapping_angle_course)?,
+        wrapping_angle_leg: some(card.wrapping_angle_leg)?,
+        bend_angle_foot_head: some(card.bend_angle_foot_head)?,
+        bend_angle_leg: some(card.bend_angle_leg)?,
+        length_stiffness: some(card.length_stiffness)?,
+        spacing_stiffness: some(card.spacing_stiffness)?,
+        spacing_leg: some(card.spacing_leg)?,
+        spacing_head_sinker: some(card.spacing_head_sinker)?,
+        anchor_stiffness: some(card.anchor_stiffness)?,
+        residual_compression: some(card.residual_compression)?,
+        paper_table_1: None,
+        center: Some(vector(placement.center)?),
+        stance: None,
+        rotation: quaternion(placement.rotation)?,
+        chart: Some(chart(scene)),
+    })
+}
+
+/// The smallest repeat and the size, so that a large fabric of a small repeat stays readable.
+fn chart(scene: &Scene) -> ChartText {
+    let (worked, first_row) = match scene.working {
+        Working::Round => (Worked::Round, None),
+        Working::Flat { first_row: Side::RightSide } => (Worked::Flat, Some(FirstRow::RightSide)),
+        Working::Flat { first_row: Side::WrongSide } => (Worked::Flat, Some(FirstRow::WrongSide)),
+    };
+    ChartText {
+        symbols: Some(write_symbols(&scene.chart.smallest_repeat())),
+        columns: Some(scene.chart.column_count() as u64),
+        rows: Some(scene.chart.row_count() as u64),
+        worked: Some(worked),
+        first_row,
+        ..ChartText::default()
+    }
+}
+
+fn simulation(scene: &Scene) -> Written<SimulationText> {
+    let settings = &scene.plan.simulation;
+    let narrow = |name: &str, value: u64| u32::try_from(value).map_err(|_| format!("{name} {value} is too large"));
+    Ok(SimulationText {
+        duration: some(settings.duration)?,
+        frame_rate: some(settings.frame_rate)?,
+        gravity: Some(Gravity(vector(settings.gravity)?)),
+        air_drag: some(settings.air_drag)?,
+        relax_first: Some(settings.relax_first),
+        rest_shape_compensation: Some(settings.rest_shape_compensation),
+        friction: Some(settings.friction),
+        seed: Some(narrow("seed", settings.seed)?),
+        largest_step: some(settings.largest_step)?,
+        smallest_step: some(settings.smallest_step)?,
+        newton_iterations: Some(settings.newton_iterations),
+        newton_tolerance: some(settings.newton_tolerance)?,
+        linear_solver: Some(settings.linear_solver),
+        linear_tolerance: some(settings.linear_tolerance)?,
+        threads: settings.threads.map(|threads| narrow("threads", threads as u64)).transpose()?,
+    })
+}
+
+fn output(scene: &Scene) -> Written<OutputText> {
+    let output = &scene.plan.output;
+    Ok(OutputText {
+        pictures: Some(output.pictures),
+        view: Some(output.view),
+        exports: Some(output.exports.clone()),
+        checkpoint_every: some(output.checkpoint_every)?,
+    })
+}
+
+fn obstacle(obstacle: &Obstacle) -> Written<ObstacleText> {
+    let mut text = ObstacleText {
+        name: Some(obstacle.name.clone()),
+        friction: some(obstacle.friction_coefficient)?,
+        motion: motion(&obstacle.motion)?,
+        ..ObstacleText::default()
+    };
+    match obstacle.shape {
+        Shape::Plane { point, normal } => {
+            text.plane = Some(PlaneText { point: vector(point)?, normal: Some(vector(normal)?) });
+        }
+        Shape::Sphere { center, radius } => {
+            text.sphere = Some(SphereText { center: vector(center)?, radius: of(radius)? });
+        }
+        Shape::Capsule { a, b, radius } => {
+            text.capsule = Some(CapsuleText { a: vector(a)?, b: vector(b)?, radius: of(radius)? });
+        }
+        Shape::Block { center, half_size, rotation } => {
+            let (center, size) = (vector(center)?, vector(2.0 * half_size)?);
+            text.block = Some(BoxText { center, size, rotation: quaternion(rotation)? });
+        }
+    }
+    Ok(text)
+}
+
+fn motion(motion: &Motion) -> Written<Option<MotionText>> {
+    if motion.keys.is_empty() {
+        return Ok(None);
+    }
+    let key = |key: &crate::model::motion::Key| -> Written<KeyText> {
+        Ok(KeyText {
+            time: of(key.time)?,
+            translation: Some(vector(key.translation)?),
+            rotation: Some(vector(key.rotation)?),
+        })
+    };
+    let keys = motion.keys.iter().map(key).collect::<Written<Vec<_>>>()?;
+    Ok(Some(MotionText { keys: Some(keys), pivot: Some(vector(motion.pivot)?), ..MotionText::default() }))
+}
+
+fn grip(grip: &Grip) -> Written<GripText> {
+    let (motion, pull) = match &grip.drive {
+        Drive::Follow(follow) => (motion(follow)?, None),
+        Drive::Force { force, ramp } => (None, Some(PullText { force: vector(*force)?, ramp: some(*ramp)? })),
+    };
+    Ok(GripText {
+        name: Some(grip.name.clone()),
+        select: select(&grip.nodes)?,
+        axes: Some(Axes(grip.axes)),
+        motion,
+        pull,
+        from: some(grip.from)?,
+        until: grip.until.map(of).transpose()?,
+    })
+}
+
+fn select(selection: &Selection) -> Written<SelectText> {
+    use super::schema::Corner;
+    let mut text = SelectText::default();
+    match selection {
+        Selection::All => text.all = Some(true),
+        Selection::Edge { edge, depth } => (text.edge, text.depth) = (Some(*edge), Some(*depth)),
+        Selection::Corner { horizontal, vertical, depth } => {
+            text.corner = Some(match (horizontal, vertical) {
+                (Edge::Top, Edge::Left) => Corner::TopLeft,
+                (Edge::Top, Edge::Right) => Corner::TopRight,
+                (Edge::Bottom, Edge::Left) => Corner::BottomLeft,
+                (Edge::Bottom, Edge::Right) => Corner::BottomRight,
+                other => return Err(format!("{other:?} make no corner")),
+            });
+            text.depth = Some(*depth);
+        }
+        Selection::Loops { rows, columns } => {
+            let ends = |range: &std::ops::Range<u32>| [range.start.saturating_add(1), range.end];
+            (text.rows, text.columns) = (rows.as_ref().map(ends), columns.as_ref().map(ends));
+        }
+        Selection::Region { low, high } => {
+            text.region = Some(RegionText { low: vector(*low)?, high: vector(*high)? });
+        }
+    }
+    Ok(text)
+}
