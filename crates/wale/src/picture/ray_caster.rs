@@ -182,7 +182,7 @@ impl<'a> Stage<'a> {
             Seen::Solid(hit) => {
                 let at = ray.origin + hit.distance * ray.direction;
                 let (key, open) = self.arriving(at, hit.normal, dice);
-                let light = self.light.surface(hit.color, hit.normal, -ray.direction, key, open);
+                let light = self.light.surface(hit.color, [hit.normal; 2], -ray.direction, key, open);
                 // An endless plane runs out into the background instead of ending at a horizon.
                 let far = at.length() / self.camera.height as f32;
                 let fade = if hit.endless { ((far - 1.2) / 2.5).clamp(0.0, 1.0) } else { 0.0 };
@@ -243,7 +243,7 @@ impl<'a> Stage<'a> {
         let normal = (self.light.to_key - self.light.to_key.dot(axis) * axis).normalize_or(-ray.direction);
         let (key, open) = self.arriving(at, normal, dice);
         let color = self.hair.points[capsule.first as usize].color;
-        self.light.surface(color.lerp(Vec3::ONE, 0.06), normal, -ray.direction, 0.55 * key, 0.85 * open)
+        self.light.surface(color.lerp(Vec3::ONE, 0.06), [normal; 2], -ray.direction, 0.55 * key, 0.85 * open)
     }
 
     fn yarn_light(&self, ray: Ray, hit: TubeHit, dice: Dice) -> Vec3 {
@@ -275,7 +275,8 @@ impl<'a> Stage<'a> {
         let (key, open) = self.arriving(at, smooth, dice);
         let groove = 1.0 - 0.5 * (1.0 - spun.crest) * (1.0 - spun.crest);
         let color = a.color.lerp(b.color, s) * (1.0 + 0.30 * spun.streak);
-        self.light.surface(color.min(Vec3::splat(0.95)), normal, -ray.direction, key * groove.sqrt(), open * groove)
+        let normals = [normal, smooth];
+        self.light.surface(color.min(Vec3::splat(0.95)), normals, -ray.direction, key * groove.sqrt(), open * groove)
             * groove
     }
 }

@@ -99,7 +99,7 @@ impl Default for Settings {
             twist: 150.0,
             hair: 2.5,
             ground: Some(DVec3::Z),
-            ambient_rays: 1,
+            ambient_rays: 2,
             scale_bar: true,
             caption: None,
         }
