@@ -35,7 +35,7 @@ pub enum Command {
     Run(Run),
     /// Go on with a run that was stopped or killed, to the same bits
     Resume(Resume),
-    /// Bring the fabric of a scene to rest, and print how it lies
+    /// Bring a repeat of the fabric to rest, lying flat, and print its size
     Relax(Relax),
     /// Count loops, nodes and yarn of a scene or a run
     Inspect(Inspect),
@@ -58,23 +58,23 @@ pub enum Command {
 pub struct New {
     /// File to write
     pub file: PathBuf,
-    /// What the scene shows
-    #[arg(long, value_enum, default_value_t = Template::Swatch)]
-    pub template: Template,
+    /// Yarn, and a fabric of it
+    #[arg(long, value_enum, default_value_t = Preset::WorstedWool)]
+    pub preset: Preset,
     /// Overwrite an existing file
     #[arg(long)]
     pub force: bool,
 }
 
-/// Scenes to begin from.
+/// Yarns that wale knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Template {
-    /// A stockinette swatch that comes to rest and curls
-    Swatch,
-    /// A garter square that falls on a sphere
-    Drop,
-    /// A rib that two grips pull apart
-    Pull,
+pub enum Preset {
+    /// Ne 30 cotton, as in T-shirts
+    FineCottonJersey,
+    /// Worsted-weight wool, as in hand-knit sweaters
+    WorstedWool,
+    /// Thick, soft hand-knit acrylic
+    ThickAcrylic,
 }
 
 /// Limits that `check`, `run` and `relax` share.
@@ -155,12 +155,12 @@ pub struct Relax {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    #[allow(missing_docs)]
-    #[command(flatten)]
-    pub manner: Manner,
-    #[allow(missing_docs)]
-    #[command(flatten)]
-    pub limits: Limits,
+    /// Starts from different small disturbances; equilibria need not be unique
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub starts: u16,
+    /// Stiffness of the table under the fabric, in bending stiffness over loop length cubed
+    #[arg(long, default_value_t = 10.0, value_parser = parse_bed)]
+    pub bed: f64,
 }
 
 /// `wale inspect`
@@ -184,6 +184,12 @@ pub struct Render {
     /// Frames to draw: `last`, `all`, a number, or a range such as `10..20`
     #[arg(long, default_value = "last")]
     pub frames: FrameChoice,
+    /// Side to look from: front, back, left, right, top, bottom, three-quarter, three-quarter-back
+    #[arg(long, default_value = "three-quarter")]
+    pub view: wale::picture::View,
+    /// What yarns are coloured by: yarn, stretch, sliding, curvature
+    #[arg(long, default_value = "yarn")]
+    pub color: wale::picture::ColorMode,
     /// Size in pixels, such as `1600x1200`
     #[arg(long, value_name = "WxH", value_parser = parse_picture_size)]
     pub size: Option<[u32; 2]>,
@@ -248,7 +254,7 @@ pub enum Up {
 #[derive(Debug, Args)]
 pub struct Bench {
     /// Nodes of the largest swatch
-    #[arg(long, default_value_t = 50_000)]
+    #[arg(long, default_value_t = 50_000, value_parser = clap::value_parser!(u32).range(1000..=10_000_000))]
     pub nodes: u32,
     /// Print JSON
     #[arg(long)]
@@ -306,6 +312,13 @@ impl std::str::FromStr for FrameChoice {
             }
         }
     }
+}
+
+fn parse_bed(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|bed| (0.0..=1e9).contains(bed))
+        .ok_or_else(|| format!("`{text}` is not a number of 0 or more"))
 }
 
 fn parse_picture_size(text: &str) -> Result<[u32; 2], String> {

@@ -6,6 +6,7 @@ pub mod energy;
 pub mod export;
 pub mod fabric;
 pub mod geometry;
+pub mod measure;
 pub mod model;
 pub mod pattern;
 pub mod picture;

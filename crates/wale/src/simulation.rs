@@ -220,6 +220,7 @@ impl Simulation {
         let newton = NewtonSettings {
             max_iterations: settings.newton_iterations as usize,
             tolerance: settings.newton_tolerance * self.system.yarn.radius,
+            convexity: 1.0,
         };
         let (obstacles, touches) = (&self.plan.obstacles, &self.touches);
         let report = self.newton.minimise(&mut self.system, &mut self.q, &newton, |system, q| {
@@ -248,6 +249,11 @@ impl Simulation {
         self.state.time = end;
         self.state.step += 1;
         self.state.next_step_size = next_step_size;
+    }
+
+    /// A report of the state as it stands, as of a step of no length.
+    pub fn standing(&mut self) -> StepReport {
+        self.report(0.0, 0, NewtonReport::default())
     }
 
     fn report(&mut self, h: f64, rejected: u32, newton: NewtonReport) -> StepReport {

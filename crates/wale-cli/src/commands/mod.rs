@@ -1,3 +1,14 @@
 //! One file per command.
 
+pub mod bench;
+pub mod check;
+pub mod export;
+pub mod inspect;
+pub mod new;
+pub mod relax;
+pub mod render;
+pub mod resume;
+pub mod run;
+pub mod schema;
 pub mod version;
+pub mod view;

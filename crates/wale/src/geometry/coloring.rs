@@ -82,9 +82,9 @@ pub fn point_scalars(network: &Network, frame: &Frame, curves: &[Curve]) -> Poin
         let range = network.yarn_passes(YarnId::new(yarn));
         let place = |p: usize| {
             let image = network.pass_image.get(p).copied().unwrap_or_default();
-            let shift = network.periods.map_or(DVec3::ZERO, |[course, wale]| {
-                f64::from(image[0]) * course + f64::from(image[1]) * wale
-            });
+            let shift = network
+                .periods
+                .map_or(DVec3::ZERO, |[course, wale]| f64::from(image[0]) * course + f64::from(image[1]) * wale);
             frame.positions[network.pass_node[p].index()] + shift
         };
         for p in range.clone() {
@@ -102,9 +102,7 @@ pub fn point_scalars(network: &Network, frame: &Frame, curves: &[Curve]) -> Poin
             }
         }
     }
-    let slid: Vec<f64> = (0..passes)
-        .map(|p| frame.sliding[p] - network.arc_length[p])
-        .collect();
+    let slid: Vec<f64> = (0..passes).map(|p| frame.sliding[p] - network.arc_length[p]).collect();
     let at_points = |value: &dyn Fn(usize, f64) -> f64| -> Vec<Vec<f64>> {
         curves
             .iter()
@@ -119,11 +117,7 @@ pub fn point_scalars(network: &Network, frame: &Frame, curves: &[Curve]) -> Poin
                             return 0.0;
                         }
                         let (u0, u1) = (frame.sliding[p], frame.sliding[next[p]]);
-                        let s = if u1 > u0 {
-                            ((u - u0) / (u1 - u0)).clamp(0.0, 1.0)
-                        } else {
-                            0.0
-                        };
+                        let s = if u1 > u0 { ((u - u0) / (u1 - u0)).clamp(0.0, 1.0) } else { 0.0 };
                         value(p, s)
                     })
                     .collect()
@@ -145,9 +139,8 @@ mod tests {
 
     /// A yarn of four passes around the corner of a square of side `side`.
     fn corner(side: f64) -> (Network, Frame, Curve) {
-        let position: Vec<DVec3> = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0)]
-            .map(|(x, y)| side * DVec3::new(x, y, 0.0))
-            .to_vec();
+        let position: Vec<DVec3> =
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0)].map(|(x, y)| side * DVec3::new(x, y, 0.0)).to_vec();
         let network = Network {
             pass_node: (0..4).map(NodeId::new).collect(),
             pass_image: vec![[0; 2]; 4],
@@ -158,18 +151,9 @@ mod tests {
             position: position.clone(),
             ..Network::default()
         };
-        let frame = Frame {
-            positions: position.clone(),
-            sliding: vec![0.0, 1.2, 2.0, 3.0],
-            ..Frame::default()
-        };
+        let frame = Frame { positions: position.clone(), sliding: vec![0.0, 1.2, 2.0, 3.0], ..Frame::default() };
         let curve = Curve {
-            points: vec![
-                position[0],
-                position[1],
-                position[1].lerp(position[2], 0.5),
-                position[3],
-            ],
+            points: vec![position[0], position[1], position[1].lerp(position[2], 0.5), position[3]],
             arc_length: vec![0.0, 1.2, 1.6, 3.0],
             pass: vec![0, 1, 1, 3],
             radius: 0.1,
@@ -187,10 +171,7 @@ mod tests {
                 assert!((x - y).abs() < 1e-12, "{a:?} {b:?}");
             }
         };
-        near(
-            &scalars.stretch[0],
-            [1.5 / 1.2 - 1.0, 1.5 / 0.8 - 1.0, 1.5 / 0.8 - 1.0, 0.5],
-        );
+        near(&scalars.stretch[0], [1.5 / 1.2 - 1.0, 1.5 / 0.8 - 1.0, 1.5 / 0.8 - 1.0, 0.5]);
         near(&scalars.sliding[0], [0.0, 0.2, 0.1, 0.0]);
         let bend = std::f64::consts::FRAC_PI_2 / 1.0;
         near(&scalars.curvature[0], [0.0, bend, 0.5 * bend, 0.0]);

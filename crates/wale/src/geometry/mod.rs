@@ -2,22 +2,24 @@
 
 pub mod coloring;
 pub mod curve;
-mod parallel_transport;
+pub mod obstacle_solid;
+pub(crate) mod parallel_transport;
 mod passes;
 pub mod ply_twist;
 #[cfg(test)]
 pub(crate) mod sample_fabric;
+pub mod solid;
 mod spline;
 mod stack_normal;
 pub mod stretch;
 pub mod tube;
 pub mod yarn_geometry;
-pub mod solid;
 
 pub use coloring::{PointScalars, Quantity};
 pub use curve::Curve;
+pub use obstacle_solid::solid_at;
 pub use ply_twist::ply_curves;
+pub use solid::{Solid, SolidShape};
 pub use stretch::segment_stretch;
 pub use tube::{TubeMesh, tube};
 pub use yarn_geometry::{CurveSettings, curves};
-pub use solid::{Solid, SolidShape};

@@ -5,7 +5,7 @@ use glam::DVec3;
 /// At each point of a curve, a unit tangent and a unit normal; the normals turn about the curve as little as can be.
 ///
 /// Coincident points take the tangent of the ones before them. Finite points give finite frames.
-pub(super) fn transported_frames(points: &[DVec3]) -> Vec<(DVec3, DVec3)> {
+pub(crate) fn transported_frames(points: &[DVec3]) -> Vec<(DVec3, DVec3)> {
     let tangents = tangents(points);
     let Some(first) = tangents.first() else {
         return Vec::new();

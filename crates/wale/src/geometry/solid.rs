@@ -46,12 +46,7 @@ impl Solid {
     /// A solid at a place, unrotated and grey.
     #[must_use]
     pub fn new(shape: SolidShape, position: DVec3) -> Self {
-        Self {
-            shape,
-            rotation: DQuat::IDENTITY,
-            position,
-            color: Self::GREY,
-        }
+        Self { shape, rotation: DQuat::IDENTITY, position, color: Self::GREY }
     }
 
     /// The solid turned so that its own `+z` points along `axis` (unchanged for a zero axis).
@@ -69,10 +64,7 @@ impl Solid {
         let half = match self.shape {
             SolidShape::Plane => return Vec::new(),
             SolidShape::Sphere { radius } => DVec3::splat(radius),
-            SolidShape::Capsule {
-                radius,
-                half_length,
-            } => DVec3::new(radius, radius, radius + half_length),
+            SolidShape::Capsule { radius, half_length } => DVec3::new(radius, radius, radius + half_length),
             SolidShape::Box { half_extents } => half_extents,
         };
         // A ball looks the same from everywhere: its box need not turn with it.
@@ -95,21 +87,9 @@ mod tests {
 
     #[test]
     fn a_capsule_turned_to_x_reaches_along_x() {
-        let solid = Solid::new(
-            SolidShape::Capsule {
-                radius: 1.0,
-                half_length: 3.0,
-            },
-            DVec3::new(10.0, 0.0, 0.0),
-        )
-        .pointing(DVec3::X);
-        let reach = |axis: DVec3| {
-            solid
-                .extent_points()
-                .iter()
-                .map(|p| p.dot(axis))
-                .fold(f64::NEG_INFINITY, f64::max)
-        };
+        let solid = Solid::new(SolidShape::Capsule { radius: 1.0, half_length: 3.0 }, DVec3::new(10.0, 0.0, 0.0))
+            .pointing(DVec3::X);
+        let reach = |axis: DVec3| solid.extent_points().iter().map(|p| p.dot(axis)).fold(f64::NEG_INFINITY, f64::max);
         assert!((reach(DVec3::X) - 14.0).abs() < 1e-12);
         assert!((reach(DVec3::Y) - 1.0).abs() < 1e-12);
     }

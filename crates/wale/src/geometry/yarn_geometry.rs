@@ -248,7 +248,8 @@ fn join(knots: &[Knot], period: Option<DVec3>, curve: &mut Curve) {
 mod tests {
     use super::*;
     use crate::geometry::sample_fabric::plain_weave;
-    use crate::model::NodeId;
+    use crate::model::{FabricCard, NodeId};
+    use crate::pattern::{Chart, Working, knit};
     use glam::{DQuat, EulerRot};
 
     fn frame_of(network: &Network) -> Frame {
@@ -343,5 +344,61 @@ mod tests {
         // The two neighbours of the seam are mirror images here: the curve has its crest on the seam.
         let (left, right) = (curve.points[n - 2] - periods[0], curve.points[1]);
         assert!((left.x + right.x).abs() < 1e-12 && (left.y - right.y).abs() < 1e-12);
+    }
+
+    /// Smallest distance of the two yarns within a stitch contact, over all contacts, in yarn diameters.
+    fn clearance(network: &Network, radius: f64, clasp: f64) -> f64 {
+        let settings = CurveSettings { clasp, samples_per_segment: 16, ..CurveSettings::new(radius) };
+        let curves = curves(network, &frame_of(network), &settings);
+        let passes = Passes::new(network);
+        let piece = |[a, b]: [crate::model::PassId; 2]| -> Vec<DVec3> {
+            let first = passes.earlier(a, b).expect("a contact's passes are neighbours");
+            curves
+                .iter()
+                .flat_map(|c| c.points.iter().zip(&c.pass))
+                .filter(|(_, p)| **p as usize == first)
+                .map(|(x, _)| *x)
+                .collect()
+        };
+        let mut least = f64::INFINITY;
+        for stitch in &network.stitches {
+            let (a, b) = (piece(stitch.passes[0]), piece(stitch.passes[1]));
+            assert!(a.len() >= 16 && b.len() >= 16);
+            for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
+                least = least.min(x.distance(*y) / (2.0 * radius));
+            }
+        }
+        least
+    }
+
+    #[test]
+    fn clasped_yarns_go_around_each_other_and_not_through() {
+        let card = FabricCard {
+            loop_length: 10e-3,
+            path_ratio: 1.0,
+            transition_length: 0.1,
+            stitch_length: 1.07e-3,
+            wale_spacing: 3.2e-3,
+            course_spacing: 2.4e-3,
+            wrapping_stiffness: 0.0,
+            wrapping_angle_course: 0.0,
+            wrapping_angle_leg: 0.0,
+            bend_angle_foot_head: 0.0,
+            bend_angle_leg: 0.0,
+            length_stiffness: 0.0,
+            spacing_stiffness: 0.0,
+            spacing_leg: 0.0,
+            spacing_head_sinker: 0.0,
+            anchor_stiffness: 0.0,
+            residual_compression: 0.0,
+        };
+        // Knits and purls, left and right: all four signs of wrapping.
+        let chart = Chart::rib(1, 1).expect("a rib").repeat(2, 3).expect("it is small");
+        let network = knit::fabric(&chart, Working::default(), &card);
+        let (led, straight) = (clearance(&network, 0.3e-3, 1.0), clearance(&network, 0.3e-3, 0.0));
+        assert!(led > 0.75, "{led}");
+        assert!(straight < 0.5, "{straight}");
+        let wrong_way = clearance(&network, 0.3e-3, -1.0);
+        assert!(wrong_way < led, "{wrong_way} {led}");
     }
 }

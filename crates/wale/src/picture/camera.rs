@@ -68,9 +68,7 @@ impl View {
     #[must_use]
     pub fn projection(self) -> Projection {
         match self {
-            Self::ThreeQuarter | Self::ThreeQuarterBack => Projection::Perspective {
-                angle: 24f64.to_radians(),
-            },
+            Self::ThreeQuarter | Self::ThreeQuarterBack => Projection::Perspective { angle: 24f64.to_radians() },
             _ => Projection::Orthographic,
         }
     }
@@ -78,9 +76,7 @@ impl View {
 
 /// A name that is no view.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "`{0}` is no view; write one of front, back, right, left, top, bottom, three-quarter, three-quarter-back"
-)]
+#[error("`{0}` is no view; write one of front, back, right, left, top, bottom, three-quarter, three-quarter-back")]
 pub struct UnknownView(pub String);
 
 impl FromStr for View {
@@ -144,11 +140,8 @@ impl Camera {
         let back = back.normalize();
         let right = up.cross(back).normalize();
         let up = back.cross(right);
-        let mut local: Vec<DVec3> = points
-            .iter()
-            .filter(|p| p.is_finite())
-            .map(|p| DVec3::new(p.dot(right), p.dot(up), p.dot(back)))
-            .collect();
+        let mut local: Vec<DVec3> =
+            points.iter().filter(|p| p.is_finite()).map(|p| DVec3::new(p.dot(right), p.dot(up), p.dot(back))).collect();
         if local.is_empty() {
             local = vec![DVec3::splat(-1e-3), DVec3::splat(1e-3)];
         }
@@ -173,12 +166,7 @@ impl Camera {
                         q.z + radius + reach / slope
                     })
                     .fold(1e-9, f64::max);
-                let mut span = [
-                    f64::INFINITY,
-                    f64::NEG_INFINITY,
-                    f64::INFINITY,
-                    f64::NEG_INFINITY,
-                ];
+                let mut span = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
                 for p in &local {
                     let q = *p - middle;
                     let scale = distance / (distance - q.z);
@@ -237,19 +225,12 @@ mod tests {
         let points: Vec<DVec3> = (0..50)
             .map(|i| {
                 let a = f64::from(i);
-                DVec3::new(
-                    0.3 + 0.1 * a.sin(),
-                    -0.2 + 0.05 * (1.7 * a).cos(),
-                    0.02 * (2.3 * a).sin(),
-                )
+                DVec3::new(0.3 + 0.1 * a.sin(), -0.2 + 0.05 * (1.7 * a).cos(), 0.02 * (2.3 * a).sin())
             })
             .collect();
         for (name, view) in View::NAMES {
             assert_eq!(name.parse(), Ok(view));
-            for projection in [
-                Projection::Orthographic,
-                Projection::Perspective { angle: 0.6 },
-            ] {
+            for projection in [Projection::Orthographic, Projection::Perspective { angle: 0.6 }] {
                 let (aspect, margin) = (1.5, 0.05);
                 let camera = Camera::framing(view, projection, &points, 1e-6, aspect, margin);
                 let (mut x, mut y) = (0f64, 0f64);
@@ -260,10 +241,7 @@ mod tests {
                 }
                 let (free_x, free_y) = (aspect - 2.0 * margin, 1.0 - 2.0 * margin);
                 assert!(x < free_x + 1e-3 && y < free_y + 1e-3, "{name}: {x} {y}");
-                assert!(
-                    x > free_x - 0.02 || y > free_y - 0.02,
-                    "{name} is loose: {x} {y}"
-                );
+                assert!(x > free_x - 0.02 || y > free_y - 0.02, "{name} is loose: {x} {y}");
             }
         }
         assert!("sideways".parse::<View>().is_err());
@@ -272,24 +250,14 @@ mod tests {
     #[test]
     fn a_ray_goes_through_the_point_it_was_asked_for() {
         let points = [DVec3::ZERO, DVec3::new(1.0, 2.0, 0.5)];
-        for projection in [
-            Projection::Orthographic,
-            Projection::Perspective { angle: 0.5 },
-        ] {
+        for projection in [Projection::Orthographic, Projection::Perspective { angle: 0.5 }] {
             let camera = Camera::framing(View::ThreeQuarter, projection, &points, 0.1, 1.0, 0.1);
             let p = DVec3::new(0.4, 0.9, 0.3);
             let (x, y) = camera.place(p);
             let (origin, direction) = camera.ray(x, y);
             assert!((p - origin).cross(direction).length() < 1e-9);
         }
-        let empty = Camera::framing(
-            View::Front,
-            Projection::Orthographic,
-            &[DVec3::NAN],
-            0.0,
-            1.0,
-            0.0,
-        );
+        let empty = Camera::framing(View::Front, Projection::Orthographic, &[DVec3::NAN], 0.0, 1.0, 0.0);
         assert!(empty.height.is_finite() && empty.height > 0.0);
     }
 }

@@ -10,11 +10,7 @@ use glam::Vec3;
 pub fn to_linear(color: [u8; 3]) -> Vec3 {
     let one = |c: u8| {
         let c = f32::from(c) / 255.0;
-        if c <= 0.040_45 {
-            c / 12.92
-        } else {
-            ((c + 0.055) / 1.055).powf(2.4)
-        }
+        if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
     };
     Vec3::new(one(color[0]), one(color[1]), one(color[2]))
 }
@@ -24,11 +20,7 @@ pub fn to_linear(color: [u8; 3]) -> Vec3 {
 pub fn to_srgb(light: Vec3) -> [u8; 3] {
     let one = |c: f32| {
         let c = c.clamp(0.0, 1.0);
-        let s = if c <= 0.003_130_8 {
-            12.92 * c
-        } else {
-            1.055 * c.powf(1.0 / 2.4) - 0.055
-        };
+        let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
         (255.0 * s).round() as u8
     };
     [one(light.x), one(light.y), one(light.z)]
@@ -87,9 +79,7 @@ impl ColorMap {
     #[must_use]
     pub fn table(self, count: usize) -> Vec<[u8; 3]> {
         let last = count.saturating_sub(1).max(1) as f64;
-        (0..count)
-            .map(|i| to_srgb(self.light(i as f64 / last)))
-            .collect()
+        (0..count).map(|i| to_srgb(self.light(i as f64 / last))).collect()
     }
 }
 
@@ -108,9 +98,8 @@ mod tests {
     #[test]
     fn lightness_rises_steadily_in_the_sequential_map() {
         let luminance = |v: Vec3| 0.2126 * v.x + 0.7152 * v.y + 0.0722 * v.z;
-        let steps: Vec<f32> = (0..=32)
-            .map(|i| luminance(ColorMap::Sequential.light(f64::from(i) / 32.0)).cbrt())
-            .collect();
+        let steps: Vec<f32> =
+            (0..=32).map(|i| luminance(ColorMap::Sequential.light(f64::from(i) / 32.0)).cbrt()).collect();
         for pair in steps.windows(2) {
             let rise = pair[1] - pair[0];
             assert!((0.008..0.04).contains(&rise), "{steps:?}");

@@ -15,11 +15,7 @@ impl Image {
     /// A picture of one colour.
     #[must_use]
     pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Self {
-        Self {
-            width,
-            height,
-            pixels: vec![color; width * height],
-        }
+        Self { width, height, pixels: vec![color; width * height] }
     }
 
     /// The pixel at column `x` of row `y`, both from the top left.

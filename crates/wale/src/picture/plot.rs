@@ -12,9 +12,7 @@ use kuva::{
 };
 
 /// Line colours, told apart also by those who see red and green alike (lightness differs).
-const COLORS: [&str; 7] = [
-    "#20638f", "#cf5c36", "#6a994e", "#7b4b94", "#d9a426", "#3b3f4a", "#4fb0ae",
-];
+const COLORS: [&str; 7] = ["#20638f", "#cf5c36", "#6a994e", "#7b4b94", "#d9a426", "#3b3f4a", "#4fb0ae"];
 
 /// One line of a plot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,10 +74,7 @@ impl Plot {
         Self {
             title: title.to_owned(),
             x_label: x_label.to_owned(),
-            panels: vec![Panel {
-                y_label: y_label.to_owned(),
-                series: series.to_vec(),
-            }],
+            panels: vec![Panel { y_label: y_label.to_owned(), series: series.to_vec() }],
         }
     }
 
@@ -89,9 +84,7 @@ impl Plot {
     /// If there is nothing to draw or a line's lists differ in length.
     pub fn to_svg(&self) -> Result<String, PlotError> {
         let scene = self.scene()?;
-        Ok(SvgBackend::new()
-            .with_embedded_font(true)
-            .render_scene(&scene))
+        Ok(SvgBackend::new().with_embedded_font(true).render_scene(&scene))
     }
 
     /// The plot as a PNG file's bytes, two pixels to each SVG unit.
@@ -99,9 +92,7 @@ impl Plot {
     /// # Errors
     /// As [`Plot::to_svg`], and if the picture is too large to draw.
     pub fn to_png(&self) -> Result<Vec<u8>, PlotError> {
-        RasterBackend { scale: 2.0 }
-            .render_scene(&self.scene()?)
-            .map_err(PlotError::Draw)
+        RasterBackend { scale: 2.0 }.render_scene(&self.scene()?).map_err(PlotError::Draw)
     }
 
     fn scene(&self) -> Result<Scene, PlotError> {
@@ -148,9 +139,7 @@ impl Plot {
     fn x_range(&self) -> Option<(f64, f64)> {
         let all = self.panels.iter().flat_map(|p| &p.series);
         let finite = all.flat_map(|s| &s.xs).copied().filter(|x| x.is_finite());
-        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-            (a.min(x), b.max(x))
-        });
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         (low < high).then_some((low, high))
     }
 }
@@ -160,11 +149,7 @@ impl Panel {
         let mut lines = Vec::new();
         for (i, series) in self.series.iter().enumerate() {
             if series.xs.len() != series.ys.len() {
-                return Err(PlotError::Lengths {
-                    name: series.name.clone(),
-                    xs: series.xs.len(),
-                    ys: series.ys.len(),
-                });
+                return Err(PlotError::Lengths { name: series.name.clone(), xs: series.xs.len(), ys: series.ys.len() });
             }
             let points: Vec<(f64, f64)> = series
                 .xs
@@ -201,11 +186,7 @@ mod tests {
 
     fn series(name: &str, f: impl Fn(f64) -> f64) -> Series {
         let xs: Vec<f64> = (0..60).map(f64::from).collect();
-        Series {
-            name: name.to_owned(),
-            ys: xs.iter().map(|x| f(*x)).collect(),
-            xs,
-        }
+        Series { name: name.to_owned(), ys: xs.iter().map(|x| f(*x)).collect(), xs }
     }
 
     #[test]
@@ -214,10 +195,7 @@ mod tests {
             title: "Rib stretched edge to edge".to_owned(),
             x_label: "extension [mm]".to_owned(),
             panels: vec![
-                Panel {
-                    y_label: "force [N]".to_owned(),
-                    series: vec![series("", |x| (0.05 * x).exp())],
-                },
+                Panel { y_label: "force [N]".to_owned(), series: vec![series("", |x| (0.05 * x).exp())] },
                 Panel {
                     y_label: "energy [mJ]".to_owned(),
                     series: vec![series("bending", |x| x), series("wrapping", |x| 0.1 * x * x)],
@@ -231,10 +209,7 @@ mod tests {
         let image = crate::picture::read_png(&plot.to_png().unwrap()).unwrap();
         let second = [0xcf, 0x5c, 0x36];
         let row = |p: usize| p / image.width;
-        let found: Vec<usize> = (0..image.pixels.len())
-            .filter(|p| image.pixels[*p] == second)
-            .map(row)
-            .collect();
+        let found: Vec<usize> = (0..image.pixels.len()).filter(|p| image.pixels[*p] == second).map(row).collect();
         // The second colour is used in the lower panel only.
         assert!(found.len() > 100);
         assert!(found.iter().all(|y| *y > image.height * 2 / 5));
@@ -249,11 +224,7 @@ mod tests {
         let wrong = Plot::lines("t", "x", "y", &[line]).to_svg();
         assert!(matches!(wrong, Err(PlotError::Lengths { xs: 60, ys: 59, .. })));
         assert_eq!(Plot::lines("t", "x", "y", &[]).to_svg(), Err(PlotError::Empty(0)));
-        let flat = Series {
-            name: String::new(),
-            xs: vec![1.0],
-            ys: vec![2.0],
-        };
+        let flat = Series { name: String::new(), xs: vec![1.0], ys: vec![2.0] };
         assert!(Plot::lines("t", "x", "y", &[flat]).to_png().is_ok());
     }
 }

@@ -30,9 +30,7 @@ pub fn write_png(image: &Image, target: impl Write) -> Result<(), PngError> {
     encoder.set_depth(::png::BitDepth::Eight);
     encoder.set_source_srgb(::png::SrgbRenderingIntent::Perceptual);
     let mut writer = encoder.write_header().map_err(PngError::Write)?;
-    writer
-        .write_image_data(image.pixels.as_flattened())
-        .map_err(PngError::Write)?;
+    writer.write_image_data(image.pixels.as_flattened()).map_err(PngError::Write)?;
     writer.finish().map_err(PngError::Write)
 }
 
@@ -41,9 +39,7 @@ pub fn write_png(image: &Image, target: impl Write) -> Result<(), PngError> {
 /// # Errors
 /// If the bytes are no such PNG.
 pub fn read_png(bytes: &[u8]) -> Result<Image, PngError> {
-    let mut reader = ::png::Decoder::new(std::io::Cursor::new(bytes))
-        .read_info()
-        .map_err(PngError::Read)?;
+    let mut reader = ::png::Decoder::new(std::io::Cursor::new(bytes)).read_info().map_err(PngError::Read)?;
     let size = reader.output_buffer_size().unwrap_or(0);
     let mut data = vec![0; size];
     let info = reader.next_frame(&mut data).map_err(PngError::Read)?;
@@ -55,10 +51,7 @@ pub fn read_png(bytes: &[u8]) -> Result<Image, PngError> {
     Ok(Image {
         width: info.width as usize,
         height: info.height as usize,
-        pixels: data[..info.buffer_size()]
-            .chunks_exact(step)
-            .map(|p| [p[0], p[1], p[2]])
-            .collect(),
+        pixels: data[..info.buffer_size()].chunks_exact(step).map(|p| [p[0], p[1], p[2]]).collect(),
     })
 }
 

@@ -74,13 +74,15 @@ pub struct Settings {
     pub plies: u32,
     /// Twist of the plies \[turns/m\].
     pub twist: f64,
+    /// Hairs per yarn radius of length; 0 for a clean yarn.
+    pub hair: f64,
     /// Which way a plane faces that lies under the subject and only catches its shadow; none if absent.
     pub ground: Option<DVec3>,
     /// Rays for the light from all around, for each of the samples.
     pub ambient_rays: u32,
     /// Whether to draw the bar in millimetres.
     pub scale_bar: bool,
-    /// A line at the bottom right.
+    /// A line at the top left.
     pub caption: Option<String>,
 }
 
@@ -89,14 +91,15 @@ impl Default for Settings {
         Self {
             width: 1600,
             height: 1200,
-            samples: 6,
+            samples: 4,
             background: [243, 242, 239],
             color_mode: ColorMode::Yarn,
             color_range: None,
             plies: 3,
             twist: 150.0,
+            hair: 3.0,
             ground: Some(DVec3::Z),
-            ambient_rays: 2,
+            ambient_rays: 1,
             scale_bar: true,
             caption: None,
         }

@@ -37,10 +37,7 @@ impl PlacedSolid {
     /// The entry into the solid from outside; `None` if the ray misses or starts inside.
     pub fn entry(&self, ray: Ray) -> Option<SolidHit> {
         let to_own = self.to_world.inverse();
-        let own = Ray {
-            origin: to_own * (ray.origin - self.position),
-            direction: to_own * ray.direction,
-        };
+        let own = Ray { origin: to_own * (ray.origin - self.position), direction: to_own * ray.direction };
         let at = |t: f32| own.origin + t * own.direction;
         let (distance, normal) = match self.shape {
             SolidShape::Plane => {
@@ -52,10 +49,7 @@ impl PlacedSolid {
                 let tiny = 1e-9 * radius as f32 * own.direction;
                 capsule_entry(own, -tiny, tiny, radius as f32).map(|t| (t, at(t)))
             }
-            SolidShape::Capsule {
-                radius,
-                half_length,
-            } => {
+            SolidShape::Capsule { radius, half_length } => {
                 let end = Vec3::Z * half_length as f32;
                 capsule_entry(own, -end, end, radius as f32).map(|t| {
                     let p = at(t);
@@ -64,9 +58,7 @@ impl PlacedSolid {
             }
             SolidShape::Box { half_extents } => {
                 let half = half_extents.as_vec3();
-                let inverse = own
-                    .direction
-                    .map(|d| if d.abs() < 1e-12 { 1e12 } else { d.recip() });
+                let inverse = own.direction.map(|d| if d.abs() < 1e-12 { 1e12 } else { d.recip() });
                 let near = (-own.origin * inverse) - half * inverse.abs();
                 let far = (-own.origin * inverse) + half * inverse.abs();
                 let t = near.max_element();
@@ -97,52 +89,27 @@ mod tests {
 
     fn entry(shape: SolidShape, axis: DVec3, origin: Vec3, direction: Vec3) -> Option<(f32, Vec3)> {
         let solid = Solid::new(shape, DVec3::new(0.0, 0.0, 1.0)).pointing(axis);
-        let ray = Ray {
-            origin,
-            direction: direction.normalize(),
-        };
-        PlacedSolid::new(&solid, DVec3::new(0.0, 0.0, 1.0))
-            .entry(ray)
-            .map(|h| (h.distance, h.normal))
+        let ray = Ray { origin, direction: direction.normalize() };
+        PlacedSolid::new(&solid, DVec3::new(0.0, 0.0, 1.0)).entry(ray).map(|h| (h.distance, h.normal))
     }
 
     #[test]
     fn known_entries() {
         let near = |found: Option<(f32, Vec3)>, distance: f32, normal: Vec3| {
             let (t, n) = found.expect("a hit");
-            assert!(
-                (t - distance).abs() < 1e-4 && n.distance(normal) < 1e-3,
-                "{t} {n}"
-            );
+            assert!((t - distance).abs() < 1e-4 && n.distance(normal) < 1e-3, "{t} {n}");
         };
         let down = -Vec3::Z;
         let from = Vec3::new(0.3, 0.0, 10.0);
-        near(
-            entry(SolidShape::Plane, DVec3::Z, from, down),
-            10.0,
-            Vec3::Z,
-        );
+        near(entry(SolidShape::Plane, DVec3::Z, from, down), 10.0, Vec3::Z);
         let sphere = SolidShape::Sphere { radius: 0.5 };
-        near(
-            entry(sphere, DVec3::X, from, down),
-            9.6,
-            Vec3::new(0.6, 0.0, 0.8),
-        );
-        let capsule = SolidShape::Capsule {
-            radius: 0.5,
-            half_length: 2.0,
-        };
+        near(entry(sphere, DVec3::X, from, down), 9.6, Vec3::new(0.6, 0.0, 0.8));
+        let capsule = SolidShape::Capsule { radius: 0.5, half_length: 2.0 };
         near(entry(capsule, DVec3::X, from, down), 9.5, Vec3::Z);
-        near(
-            entry(capsule, DVec3::Z, from, down),
-            10.0 - 2.4,
-            Vec3::new(0.6, 0.0, 0.8),
-        );
-        let slab = SolidShape::Box {
-            half_extents: DVec3::new(1.0, 2.0, 0.25),
-        };
+        near(entry(capsule, DVec3::Z, from, down), 10.0 - 2.4, Vec3::new(0.6, 0.0, 0.8));
+        let slab = SolidShape::Box { half_extents: DVec3::new(1.0, 2.0, 0.25) };
         near(entry(slab, DVec3::Z, from, down), 9.75, Vec3::Z);
-        near(entry(slab, DVec3::X, from, down), 9.0, Vec3::Z);
+        near(entry(slab, DVec3::X, Vec3::new(0.2, 0.0, 10.0), down), 9.0, Vec3::Z);
         assert!(entry(slab, DVec3::Z, Vec3::new(1.5, 0.0, 10.0), down).is_none());
         assert!(entry(SolidShape::Plane, -DVec3::Z, from, down).is_none());
     }

@@ -32,8 +32,8 @@ pub(super) fn surface(spin: Spin, angle: f32, arc_length: f64, detail: f32) -> S
     let slope = TAU * (spin.twist * spin.radius) as f32;
     let length = (arc_length / spin.radius).rem_euclid(4096.0) as f32;
     if spin.plies < 2 {
-        let streak = fibres(around / TAU, 14, length, 0);
-        return tilted(0.25 * detail * streak, slope, 1.0, streak * detail);
+        let streak = fibres(around / TAU, 36, length, 0);
+        return tilted(0.45 * detail * streak, slope, 1.0, streak * detail);
     }
     let plies = spin.plies as f32;
     let half = PI / plies;
@@ -51,13 +51,8 @@ pub(super) fn surface(spin: Spin, angle: f32, arc_length: f64, detail: f32) -> S
     let crest = (reach / ply).clamp(0.0, 1.0);
     // Fibres of a ply are spun against the plies' own twist, so that they run nearly along the yarn.
     let within = y.atan2(x) / TAU - 0.55 * slope / TAU * length;
-    let streak = fibres(within, 9, length, sector as i32);
-    tilted(
-        detail * (tilt + 0.22 * streak),
-        slope,
-        1.0 - detail * (1.0 - crest),
-        detail * streak,
-    )
+    let streak = fibres(within, 24, length, sector as i32);
+    tilted(detail * (tilt + 0.45 * streak), slope, 1.0 - detail * (1.0 - crest), detail * streak)
 }
 
 fn tilted(tilt: f32, slope: f32, crest: f32, streak: f32) -> Surface {
@@ -65,11 +60,7 @@ fn tilted(tilt: f32, slope: f32, crest: f32, streak: f32) -> Surface {
     // The surface is a helix: its normal has no part along the helix.
     let along = -slope * around;
     let length = (1.0 + along * along).sqrt();
-    Surface {
-        normal: [outward / length, around / length, along / length],
-        crest,
-        streak,
-    }
+    Surface { normal: [outward / length, around / length, along / length], crest, streak }
 }
 
 /// Smooth noise drawn out along the yarn; `around` in turns.
@@ -78,17 +69,13 @@ fn fibres(around: f32, count: i32, length: f32, ply: i32) -> f32 {
     for (octave, weight) in [(1, 0.6), (2, 0.4)] {
         let count = count * octave;
         let x = around.rem_euclid(1.0) * count as f32;
-        let y = length * (0.22 * octave as f32);
+        let y = length * (0.30 * octave as f32);
         let (x0, y0) = (x.floor(), y.floor());
         let ease = |t: f32| t * t * (3.0 - 2.0 * t);
         let (fx, fy) = (ease(x - x0), ease(y - y0));
         let at = |dx: i32, dy: i32| {
             let column = (x0 as i32 + dx).rem_euclid(count);
-            unit_hash(
-                column as u32,
-                (y0 as i32 + dy) as u32,
-                (ply + 7 * octave) as u32,
-            )
+            unit_hash(column as u32, (y0 as i32 + dy) as u32, (ply + 7 * octave) as u32)
         };
         let low = at(0, 0) + fx * (at(1, 0) - at(0, 0));
         let high = at(0, 1) + fx * (at(1, 1) - at(0, 1));
@@ -99,8 +86,7 @@ fn fibres(around: f32, count: i32, length: f32, ply: i32) -> f32 {
 
 /// A number from 0 to 1 that follows from three integers and looks random.
 pub(super) fn unit_hash(a: u32, b: u32, c: u32) -> f32 {
-    let mut h =
-        a.wrapping_mul(0x9e37_79b1) ^ b.wrapping_mul(0x85eb_ca6b) ^ c.wrapping_mul(0xc2b2_ae35);
+    let mut h = a.wrapping_mul(0x9e37_79b1) ^ b.wrapping_mul(0x85eb_ca6b) ^ c.wrapping_mul(0xc2b2_ae35);
     h = (h ^ (h >> 16)).wrapping_mul(0x7feb_352d);
     h = (h ^ (h >> 15)).wrapping_mul(0x846c_a68b);
     h ^= h >> 16;
@@ -111,19 +97,13 @@ pub(super) fn unit_hash(a: u32, b: u32, c: u32) -> f32 {
 mod tests {
     use super::*;
 
-    const SPIN: Spin = Spin {
-        plies: 3,
-        twist: 200.0,
-        radius: 5e-4,
-    };
+    const SPIN: Spin = Spin { plies: 3, twist: 200.0, radius: 5e-4 };
 
     #[test]
     fn each_turn_shows_every_ply_once() {
         let grooves = |spin: Spin| {
             let crest = |i: i32| surface(spin, i as f32 * TAU / 3600.0, 0.0, 1.0).crest;
-            (0..3600)
-                .filter(|&i| crest(i) < 0.5 && crest(i + 1) >= 0.5)
-                .count()
+            (0..3600).filter(|&i| crest(i) < 0.5 && crest(i + 1) >= 0.5).count()
         };
         for plies in [2, 3, 4, 6] {
             assert_eq!(grooves(Spin { plies, ..SPIN }), plies as usize);

@@ -76,6 +76,13 @@ impl Checkpoints {
         with_writer(state, &[0; 32], Marks::default(), |writer| writer.byte_count())
     }
 
+    /// About the length of a checkpoint of a fabric of so many nodes and passes \[bytes\].
+    #[must_use]
+    pub fn byte_count_of(node_count: usize, pass_count: usize) -> u64 {
+        // Coordinates and velocities of a block each, an anchor a pass.
+        (2 * BLOCK * node_count + pass_count) as u64 * 8
+    }
+
     /// Saves a state, points `LATEST` to it, and drops all but two generations.
     ///
     /// # Errors

@@ -87,7 +87,7 @@ pub enum RecordError {
         path: PathBuf,
     },
     /// A new run was asked for in a folder that holds something.
-    #[error("{}: the folder is not empty: {mend}", path.display())]
+    #[error("{}: not empty: {mend}", path.display())]
     NotEmpty {
         /// The folder.
         path: PathBuf,

@@ -41,13 +41,17 @@ pub struct Comparison {
     pub gone: Vec<PathBuf>,
 }
 
-/// Compares the files named in a list with their hashes.
+/// Compares the files named in a list with their hashes; `last` is the name that ends a list that is whole.
 ///
 /// # Errors
 /// When the list is damaged or a file cannot be read.
-pub fn compare_hashes(list: &Path) -> Result<Comparison, RecordError> {
+pub fn compare_hashes(list: &Path, last: &str) -> Result<Comparison, RecordError> {
     let mut comparison = Comparison::default();
-    for line in read_text(list)?.lines() {
+    let text = read_text(list)?;
+    if !text.ends_with(&format!("  {last}\n")) {
+        return Err(RecordError::Damaged { path: list.to_path_buf(), reason: format!("it does not end with {last}") });
+    }
+    for line in text.lines() {
         let (hash, name) =
             line.split_once("  ").and_then(|(hash, name)| Some((parse_hash(hash)?, name))).ok_or_else(|| {
                 RecordError::Damaged { path: list.to_path_buf(), reason: format!("`{line}` is not a hash and a name") }
@@ -91,7 +95,7 @@ mod tests {
         std::fs::write(&scene, "a").unwrap();
         std::fs::write(folder.path().join("chart.txt"), "k, p").unwrap();
         write_hashes(&list, &[scene.clone(), PathBuf::from("chart.txt")]).unwrap();
-        assert_eq!(compare_hashes(&list).unwrap(), Comparison::default());
+        assert_eq!(compare_hashes(&list, "chart.txt").unwrap(), Comparison::default());
         assert!(
             std::fs::read_to_string(&list)
                 .unwrap()
@@ -100,7 +104,7 @@ mod tests {
 
         std::fs::write(&scene, "b").unwrap();
         std::fs::remove_file(folder.path().join("chart.txt")).unwrap();
-        let comparison = compare_hashes(&list).unwrap();
+        let comparison = compare_hashes(&list, "chart.txt").unwrap();
         assert_eq!(comparison.changed, [scene]);
         assert_eq!(comparison.gone, [PathBuf::from("chart.txt")]);
     }
@@ -109,9 +113,17 @@ mod tests {
     fn a_damaged_list_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let list = folder.path().join("inputs.sha256");
-        for bad in ["x", "é  name", &format!("{}  name", "g".repeat(64))] {
+        let hash = "a".repeat(64);
+        for bad in [
+            "",
+            "x  chart.txt\n",
+            "é  chart.txt\n",
+            &format!("{}  chart.txt\n", "g".repeat(64)),
+            &format!("{hash}  chart.txt"),
+            &format!("{hash}  other\n"),
+        ] {
             std::fs::write(&list, bad).unwrap();
-            assert!(matches!(compare_hashes(&list), Err(RecordError::Damaged { .. })));
+            assert!(matches!(compare_hashes(&list, "chart.txt"), Err(RecordError::Damaged { .. })));
         }
     }
 }

@@ -62,7 +62,7 @@ impl Interrupted {
         } else if (&began.features, &began.architecture) != (&here.features, &here.architecture) {
             notes.push("begun by another build of wale: the last bits may differ".to_owned());
         }
-        let comparison = compare_hashes(&folder.join(INPUTS))?;
+        let comparison = compare_hashes(&folder.join(INPUTS), SCENE)?;
         for path in comparison.changed {
             if !allow_changed {
                 return Err(RecordError::InputChanged { path: folder.join(path) });

@@ -87,10 +87,12 @@ impl RunFolder {
             fs::create_dir_all(&sub).map_err(|error| RecordError::from_io(&sub, "create", error))?;
         }
         write_bytes_atomically(&folder.join(SCENE), start.scene.as_bytes())?;
-        let mut hashed = vec![PathBuf::from(SCENE)];
+        let mut hashed = Vec::new();
         for input in start.inputs {
             hashed.push(std::path::absolute(input).map_err(|error| RecordError::from_io(input, "find", error))?);
         }
+        // Last, so that a list that was cut short lacks it.
+        hashed.push(PathBuf::from(SCENE));
         write_hashes(&folder.join(INPUTS), &hashed)?;
         start.environment.write(&folder.join(ENVIRONMENT))?;
         let metrics = Metrics::create(&folder.join(METRICS), start.columns)?;

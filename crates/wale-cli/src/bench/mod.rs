@@ -1,0 +1,6 @@
+//! Measurements of speed, each beside the machine's memory bandwidth of the same minute.
+
+pub mod swatch;
+mod triad;
+
+pub use triad::triad;

@@ -1,0 +1,144 @@
+//! A garter swatch that falls on a sphere, and how fast it does.
+
+use std::time::Instant;
+
+use serde::Serialize;
+use wale::pattern::knit;
+use wale::scene::Scene;
+use wale::simulation::Simulation;
+use wale_numerics::block_matrix::BlockMatrix;
+
+use crate::exit::{Code, Failure};
+
+/// Step that speeds are measured at \[s\].
+const STEP: f64 = 1e-3;
+/// Steps before the measurement: caches, factors, and the fabric off its initial layout.
+const WARM_UP: usize = 3;
+
+/// What one swatch took.
+#[derive(Clone, Debug, Serialize)]
+pub struct Measured {
+    /// Nodes.
+    pub nodes: usize,
+    /// Steps measured.
+    pub steps: usize,
+    /// Wall time to set it up \[s\].
+    pub set_up_s: f64,
+    /// Wall time a step \[s\].
+    pub step_s: f64,
+    /// Nodes times steps a second.
+    pub node_steps_per_s: f64,
+    /// Newton iterations a step.
+    pub newton_iterations: f64,
+    /// Iterations of the linear solver a step.
+    pub linear_iterations: f64,
+    /// Wall time for a frame of 1/30 s at the steps that the controller chooses \[s\].
+    pub frame_s: f64,
+    /// Bandwidth of the product of the block matrix and a vector \[bytes/s\].
+    pub product_bytes_per_s: f64,
+    /// Largest memory of the process so far \[bytes\], where the operating system says.
+    pub peak_memory_bytes: Option<u64>,
+}
+
+/// Runs a square garter swatch of about so many nodes for about `seconds` of wall time.
+///
+/// # Errors
+/// When a step fails.
+pub fn measure(nodes: u32, seconds: f64) -> Result<Measured, Failure> {
+    let mut scene = scene(nodes)?;
+    scene.plan.simulation.largest_step = STEP;
+    let began = Instant::now();
+    let mut simulation = simulation(&scene);
+    let set_up_s = began.elapsed().as_secs_f64();
+    let node_count = simulation.network().node_count();
+    for _ in 0..WARM_UP {
+        step(&mut simulation)?;
+    }
+    let (mut steps, mut newton, mut linear) = (0, 0, 0);
+    let began = Instant::now();
+    while steps == 0 || began.elapsed().as_secs_f64() < seconds {
+        let report = step(&mut simulation)?;
+        steps += 1;
+        newton += report.newton_iterations;
+        linear += report.linear_iterations;
+    }
+    let step_s = began.elapsed().as_secs_f64() / steps as f64;
+    Ok(Measured {
+        nodes: node_count,
+        steps,
+        set_up_s,
+        step_s,
+        node_steps_per_s: node_count as f64 / step_s,
+        newton_iterations: newton as f64 / steps as f64,
+        linear_iterations: linear as f64 / steps as f64,
+        frame_s: frame(&mut scene)?,
+        product_bytes_per_s: product(&simulation),
+        peak_memory_bytes: peak_memory(),
+    })
+}
+
+/// Wall time of the first frame at free steps.
+fn frame(scene: &mut Scene) -> Result<f64, Failure> {
+    scene.plan.simulation.largest_step = 5.0 * STEP;
+    scene.plan.simulation.frame_rate = 30.0;
+    let mut simulation = simulation(scene);
+    let began = Instant::now();
+    loop {
+        step(&mut simulation)?;
+        if simulation.frame_due().is_some() {
+            return Ok(began.elapsed().as_secs_f64());
+        }
+    }
+}
+
+/// The scene: as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
+fn scene(nodes: u32) -> Result<Scene, Failure> {
+    let side = (f64::from(nodes) / 4.0).sqrt().round().max(4.0);
+    let width = side * 5e-3;
+    let text = format!(
+        "schema = 1\n[yarn]\npreset = \"worsted-wool\"\n[fabric]\ncenter = [0, 0, {center}]\n\
+         [fabric.chart]\npattern = \"garter\"\ncolumns = {side}\nrows = {side}\n\
+         [simulation]\nduration = 100\nrelax_first = false\n\
+         [[obstacle]]\nsphere = {{ center = [0, 0, 0], radius = {radius} }}\n",
+        radius = 0.25 * width,
+        center = 0.25 * width + 4e-3,
+    );
+    Scene::from_text(&text, "bench").map_err(|error| Failure::new(Code::Bug, error))
+}
+
+fn simulation(scene: &Scene) -> Simulation {
+    let network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    Simulation::new(network, &scene.yarn, &scene.fabric, scene.plan.clone())
+}
+
+fn step(simulation: &mut Simulation) -> Result<wale::simulation::StepReport, Failure> {
+    simulation.step().map_err(|error| Failure::new(Code::NotConverged, error))
+}
+
+fn product(simulation: &Simulation) -> f64 {
+    const REPEATS: usize = 5;
+    let matrix: BlockMatrix = BlockMatrix::zeros(simulation.system().pattern().clone());
+    let x = vec![1.0; matrix.dimension()];
+    let mut out = vec![0.0; matrix.dimension()];
+    let bytes = size_of_val(matrix.blocks())
+        + size_of_val(matrix.pattern().columns())
+        + size_of_val(&x[..])
+        + size_of_val(&out[..]);
+    let mut best = f64::INFINITY;
+    for repeat in 0..=REPEATS {
+        let began = Instant::now();
+        matrix.multiply(std::hint::black_box(&x), &mut out);
+        std::hint::black_box(&mut out);
+        if repeat > 0 {
+            best = best.min(began.elapsed().as_secs_f64());
+        }
+    }
+    bytes as f64 / best
+}
+
+fn peak_memory() -> Option<u64> {
+    let text = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}

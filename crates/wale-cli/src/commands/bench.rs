@@ -1,0 +1,65 @@
+//! `wale bench`: speed and memory on this machine, beside its memory bandwidth.
+
+use serde_json::json;
+
+use crate::arguments::Bench;
+use crate::bench::swatch::{Measured, measure};
+use crate::bench::triad;
+use crate::exit::Failure;
+use crate::output::{bytes, grouped, note, span};
+use crate::{machine, output, say};
+
+/// Sizes, as parts of the largest.
+const PARTS: [u32; 3] = [10, 3, 1];
+/// Wall time that a size is measured for \[s\].
+const SECONDS: f64 = 5.0;
+
+/// Measures.
+pub fn bench(arguments: &Bench) -> Result<(), Failure> {
+    let threads = machine::use_threads(arguments.manner.threads.map(usize::from))?;
+    let before = triad();
+    let mut measured: Vec<Measured> = Vec::new();
+    for part in PARTS {
+        let nodes = arguments.nodes / part;
+        if !arguments.manner.quiet {
+            note(&format!("garter swatch of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
+        }
+        measured.push(measure(nodes, SECONDS)?);
+    }
+    let bandwidth = before.max(triad());
+    let exponent = exponent(&measured);
+    if arguments.json {
+        return output::json(&json!({
+            "threads": threads,
+            "triad_bytes_per_s": bandwidth,
+            "swatches": measured,
+            "step_cost_exponent": exponent,
+        }));
+    }
+    say!("memory triad on {threads} threads: {:.1} GB/s", 1e-9 * bandwidth)?;
+    say!("garter swatch falling on a sphere, steps of 1 ms:")?;
+    say!("    nodes   node·steps/s   Newton   linear   frame of 1/30 s   product/triad   peak memory")?;
+    for swatch in &measured {
+        say!(
+            "{:>9} {:>14} {:>8.1} {:>8.1} {:>17} {:>13.0} % {:>13}",
+            grouped(swatch.nodes as u64),
+            grouped(swatch.node_steps_per_s as u64),
+            swatch.newton_iterations,
+            swatch.linear_iterations,
+            span(swatch.frame_s),
+            100.0 * swatch.product_bytes_per_s / bandwidth,
+            swatch.peak_memory_bytes.map_or_else(|| "?".to_owned(), bytes)
+        )?;
+    }
+    say!("the cost of a step grows as n^{exponent:.2}")
+}
+
+/// Slope of the logarithm of the cost over that of the size, from the smallest to the largest.
+fn exponent(measured: &[Measured]) -> f64 {
+    match (measured.first(), measured.last()) {
+        (Some(first), Some(last)) if last.nodes > first.nodes => {
+            (last.step_s / first.step_s).ln() / (last.nodes as f64 / first.nodes as f64).ln()
+        }
+        _ => f64::NAN,
+    }
+}

@@ -1,0 +1,65 @@
+//! `wale check`: whether a scene is sound, how large it is, and what it will take.
+
+use serde_json::json;
+use wale::measure::Census;
+use wale::record::{Checkpoints, Frames};
+
+use crate::arguments::Check;
+use crate::estimate::Estimate;
+use crate::exit::Failure;
+use crate::opened::OpenedScene;
+use crate::output::{bytes, grouped, span};
+use crate::{machine, output, say};
+
+/// Checks it.
+pub fn check(arguments: &Check) -> Result<(), Failure> {
+    let opened = OpenedScene::read(&arguments.scene)?;
+    if arguments.resolved {
+        return output::line(format_args!("{}", opened.resolved()?.trim_end()));
+    }
+    opened.check_memory(arguments.limits.max_memory)?;
+    let [rows, columns] = opened.chart_size();
+    let estimate = Estimate::of_chart(rows, columns);
+    let census = Census::of(&opened.network(), &opened.scene.yarn);
+    let plan = &opened.scene.plan.simulation;
+    let frames = (plan.duration * plan.frame_rate + 1e-6).floor() as u64 + 1;
+    let frame_bytes = Frames::byte_count(census.nodes, census.passes);
+    let checkpoint_bytes = Checkpoints::byte_count_of(census.nodes, census.passes);
+    let files = frames.saturating_mul(frame_bytes).saturating_add(2 * checkpoint_bytes);
+    let seconds = estimate.seconds(plan.duration, plan.largest_step);
+    if arguments.json {
+        return output::json(&json!({
+            "scene": arguments.scene,
+            "fabric": census,
+            "frames": frames,
+            "memory": estimate.memory.iter().map(|(name, bytes)| json!({"item": name, "bytes": bytes})).collect::<Vec<_>>(),
+            "memory_bytes": estimate.total(),
+            "files_bytes": files,
+            "time_s": { "least": seconds[0], "most": seconds[1] },
+        }));
+    }
+    say!("{}: sound", arguments.scene.display())?;
+    say!("  chart    {rows} rows, {columns} columns, {} loops", grouped(census.loops as u64))?;
+    say!(
+        "  fabric   {} nodes, {} degrees of freedom, {:.2} m of yarn, {:.2} g",
+        grouped(census.nodes as u64),
+        grouped(census.degrees_of_freedom as u64),
+        census.yarn_length_m,
+        1e3 * census.mass_kg
+    )?;
+    say!(
+        "  run      {} s, {} frames, steps of at most {} ms",
+        plan.duration,
+        grouped(frames),
+        1e3 * plan.largest_step
+    )?;
+    say!("  memory   about {}", bytes(estimate.total()))?;
+    for (name, size) in &estimate.memory {
+        say!("             {:>9}  {name}", bytes(*size))?;
+    }
+    if let Some(free) = machine::available_memory() {
+        say!("             {:>9}  free now", bytes(free))?;
+    }
+    say!("  files    about {}", bytes(files))?;
+    say!("  time     {} to {}, by the speed of a common machine", span(seconds[0]), span(seconds[1]))
+}

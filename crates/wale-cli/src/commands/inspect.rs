@@ -1,0 +1,101 @@
+//! `wale inspect`: what a scene's fabric, or a run's, consists of and measures.
+
+use serde_json::{Value, json};
+use wale::measure::{Census, Shape};
+use wale::model::{Frame, Network};
+use wale::record::{RunReader, Status};
+
+use crate::arguments::{FrameChoice, Inspect};
+use crate::exit::Failure;
+use crate::opened::{OpenedRun, OpenedScene};
+use crate::output::{self, grouped};
+use crate::say;
+
+/// Inspects it.
+pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
+    let path = &arguments.path;
+    let (network, yarn, frame, run);
+    if path.is_dir() {
+        let opened = OpenedRun::open(path, FrameChoice::Last)?;
+        frame = opened.frame(opened.frames.start)?;
+        run = Some(run_facts(&opened.reader, &frame)?);
+        (network, yarn) = (opened.network, opened.scene.yarn);
+    } else {
+        let opened = OpenedScene::read(path)?;
+        opened.check_memory(None)?;
+        network = opened.network();
+        frame = initial(&network);
+        run = None;
+        yarn = opened.scene.yarn;
+    }
+    let census = Census::of(&network, &yarn);
+    let shape = Shape::of(&network, &frame);
+    let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
+    if arguments.json {
+        let mut facts = json!({
+            "path": path,
+            "fabric": census,
+            "shape": shape,
+            "areal_mass_kg_per_m2": areal_mass,
+        });
+        if let Some(run) = run {
+            facts["run"] = run;
+        }
+        return output::json(&facts);
+    }
+    say!("{}", path.display())?;
+    if let Some(run) = &run {
+        let text = |key: &str| run[key].as_str().unwrap_or_default().to_owned();
+        say!("  run      {}, {} frames, last at {} s", text("status"), run["frames"], run["time_s"])?;
+    }
+    say!(
+        "  loops    {} ({} rows, {} columns; {} knit as seen from the front)",
+        grouped(census.loops as u64),
+        census.rows,
+        census.columns,
+        grouped(census.knit_loops as u64)
+    )?;
+    say!("  nodes    {}", grouped(census.nodes as u64))?;
+    for (size, count) in census.nodes_by_stack_size.iter().enumerate().filter(|(_, count)| **count > 0) {
+        say!("             {:>9}  with a stack of {size}", grouped(*count as u64))?;
+    }
+    say!("  freedom  {} coordinates", grouped(census.degrees_of_freedom as u64))?;
+    say!(
+        "  yarn     {} in {:.3} m, {:.3} g",
+        if census.yarns == 1 { "one".to_owned() } else { census.yarns.to_string() },
+        census.yarn_length_m,
+        1e3 * census.mass_kg
+    )?;
+    let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
+    say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
+    say!(
+        "  stitch   {:.2} mm wide, {:.2} mm high, {:.2} loops/cm²",
+        1e3 * shape.wale_spacing_m,
+        1e3 * shape.course_spacing_m,
+        1e-4 * shape.stitch_density_per_m2
+    )?;
+    say!("  mass     {:.0} g/m²", 1e3 * areal_mass)?;
+    say!(
+        "  curl     sides {:+.1} 1/m along the course, ends {:+.1} 1/m along the wale (+ to the front)",
+        shape.side_edges.course_per_m,
+        shape.end_edges.wale_per_m
+    )
+}
+
+fn run_facts(reader: &RunReader, last: &Frame) -> Result<Value, Failure> {
+    let status = match reader.status()? {
+        Status::Running if !reader.is_held() => "killed (go on with `wale resume`)".to_owned(),
+        status => status.to_string(),
+    };
+    Ok(json!({
+        "status": status,
+        "frames": reader.frames().count()?,
+        "time_s": last.time,
+        "version": reader.environment()?.version,
+    }))
+}
+
+/// The initial layout as a frame.
+fn initial(network: &Network) -> Frame {
+    Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() }
+}

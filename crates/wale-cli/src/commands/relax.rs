@@ -1,0 +1,91 @@
+//! `wale relax`: one repeat of the fabric brought to rest, endless along both directions and without friction.
+
+use rayon::prelude::*;
+use serde_json::json;
+use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
+use wale::pattern::knit;
+
+use crate::arguments::Relax;
+use crate::exit::{Code, Failure};
+use crate::opened::OpenedScene;
+use crate::{output, say};
+
+/// Most loops of a repeat; its system is solved densely.
+const MOST_LOOPS: usize = 400;
+
+/// Relaxes it.
+pub fn relax(arguments: &Relax) -> Result<(), Failure> {
+    let opened = OpenedScene::read(&arguments.scene)?;
+    let (yarn, card) = (&opened.scene.yarn, &opened.scene.fabric);
+    let repeat = opened.scene.chart.smallest_repeat();
+    let loops = repeat.loop_count();
+    if loops > MOST_LOOPS {
+        return Err(Failure::new(
+            Code::ResourceLimit,
+            format_args!(
+                "{}: the smallest repeat of the chart has {loops} loops, and at most {MOST_LOOPS} are relaxed",
+                arguments.scene.display()
+            ),
+        ));
+    }
+    let tile = knit::tile(&repeat, card);
+    let mut found: Vec<(u64, TileEquilibrium)> = (1..=u64::from(arguments.starts))
+        .into_par_iter()
+        .map(|seed| {
+            let settings = TileSettings { seed, bed: arguments.bed, ..TileSettings::default() };
+            (seed, relax_tile(&tile, yarn, card, &settings))
+        })
+        .collect();
+    // The lowest energy is the one that a swatch shaken long enough would find.
+    found.sort_by(|a, b| {
+        (!a.1.converged, a.1.energy).partial_cmp(&(!b.1.converged, b.1.energy)).unwrap_or(a.0.cmp(&b.0))
+    });
+    let (seed, best) = &found[0];
+    if !best.converged {
+        return Err(Failure::new(
+            Code::NotConverged,
+            format_args!(
+                "{}: not at rest after {} iterations, residual {:.1e}",
+                arguments.scene.display(),
+                best.iterations,
+                best.residual
+            ),
+        ));
+    }
+    let (width, height) = (best.wale_spacing, best.course_spacing);
+    let density = 1.0 / (width * height);
+    let loop_yarn = tile.yarn_length() / loops as f64;
+    let areal_mass = loop_yarn * yarn.linear_density * density;
+    if arguments.json {
+        return output::json(&json!({
+            "scene": arguments.scene,
+            "repeat": { "rows": repeat.row_count(), "columns": repeat.column_count() },
+            "wale_spacing_m": width,
+            "course_spacing_m": height,
+            "stitch_density_per_m2": density,
+            "areal_mass_kg_per_m2": areal_mass,
+            "energy_per_loop_J": best.energy,
+            "iterations": best.iterations,
+            "residual": best.residual,
+            "start": seed,
+            "starts": found.iter().map(|(seed, at)| json!({
+                "start": seed,
+                "converged": at.converged,
+                "wale_spacing_m": at.wale_spacing,
+                "course_spacing_m": at.course_spacing,
+                "energy_per_loop_J": at.energy,
+            })).collect::<Vec<_>>(),
+        }));
+    }
+    let [rows, columns] = opened.chart_size();
+    say!("{}: at rest after {} iterations", arguments.scene.display(), best.iterations)?;
+    say!("  repeat   {} rows, {} columns", repeat.row_count(), repeat.column_count())?;
+    say!("  stitch   {:.3} mm wide, {:.3} mm high, {:.2} loops/cm²", 1e3 * width, 1e3 * height, 1e-4 * density)?;
+    say!("  chart    {:.1} × {:.1} mm lying flat", 1e3 * width * columns as f64, 1e3 * height * rows as f64)?;
+    say!("  mass     {:.0} g/m²", 1e3 * areal_mass)?;
+    let others = found.iter().filter(|(_, at)| at.converged && at.energy > best.energy * (1.0 + 1e-6)).count();
+    if others > 0 {
+        say!("  starts   {others} of {} came to rest higher: the equilibrium is not unique", found.len())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,99 @@
+//! What a scene will take, before anything is built: nodes, memory, files.
+
+use serde::Serialize;
+
+use crate::exit::{Code, Failure};
+use crate::output::bytes;
+
+/// Nodes of a loop inside a fabric [Cirio2017].
+const NODES_A_LOOP: f64 = 4.0;
+/// Nodes of a loop at an edge besides those: cast-on, bind-off and turns.
+const NODES_AN_EDGE_LOOP: f64 = 2.0;
+
+/// Memory by what it is for \[bytes\].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Nodes.
+    pub nodes: u64,
+    /// What takes memory, and how much.
+    pub memory: Vec<(&'static str, u64)>,
+}
+
+impl Estimate {
+    /// For a fabric of so many rows and columns.
+    #[must_use]
+    pub fn of_chart(rows: u64, columns: u64) -> Self {
+        let (rows, columns) = (rows as f64, columns as f64);
+        Self::of_nodes(NODES_A_LOOP * rows * columns + NODES_AN_EDGE_LOOP * (rows + columns))
+    }
+
+    fn of_nodes(nodes: f64) -> Self {
+        // Measured a node on swatches of 1,000 to 100,000 nodes, and rounded up.
+        let linear = |bytes_a_node: f64| (bytes_a_node * nodes) as u64;
+        // Fill of nested dissection on a planar graph grows as n log n.
+        let fill = nodes * nodes.max(2.0).log2();
+        let memory = vec![
+            ("yarns and nodes", linear(700.0)),
+            ("energies", linear(2600.0)),
+            ("matrix", linear(11.0 * 25.0 * 8.0)),
+            ("factor of the matrix", (FACTOR_BYTES * fill) as u64),
+        ];
+        Self { nodes: nodes as u64, memory }
+    }
+
+    /// All of it \[bytes\].
+    #[must_use]
+    pub fn total(&self) -> u64 {
+        self.memory.iter().fold(0, |sum, (_, bytes)| sum.saturating_add(*bytes))
+    }
+
+    /// Wall time of a run \[s\], at least and at most: with steps of the longest and of a twentieth of that.
+    #[must_use]
+    pub fn seconds(&self, duration: f64, largest_step: f64) -> [f64; 2] {
+        let steps = duration / largest_step;
+        let seconds = steps * self.nodes as f64 / NODE_STEPS_A_SECOND;
+        [seconds, 20.0 * seconds]
+    }
+
+    /// Refuses what does not fit.
+    ///
+    /// # Errors
+    /// [`Code::ResourceLimit`], naming the largest item; never without a limit.
+    pub fn check(&self, limit: Option<u64>) -> Result<(), Failure> {
+        let total = self.total();
+        let Some(limit) = limit.filter(|limit| total > *limit) else { return Ok(()) };
+        let (name, largest) = self.memory.iter().max_by_key(|item| item.1).copied().unwrap_or(("all", total));
+        Err(Failure::new(
+            Code::ResourceLimit,
+            format_args!(
+                "the scene needs about {} of memory for {} nodes and {} are to be had; the largest item is the {name} \
+                 with {}: make the chart smaller, or give more with --max-memory",
+                bytes(total),
+                crate::output::grouped(self.nodes),
+                bytes(limit),
+                bytes(largest)
+            ),
+        ))
+    }
+}
+
+/// Speed that the estimate of time assumes: that of two cores.
+const NODE_STEPS_A_SECOND: f64 = 5e4;
+/// Bytes of factor a node and doubling of the nodes.
+const FACTOR_BYTES: f64 = 120.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_refused_by_its_largest_item() {
+        let estimate = Estimate::of_chart(1_000_000, 1_000_000);
+        let failure = estimate.check(Some(8_000_000_000)).unwrap_err();
+        assert_eq!(failure.code, Code::ResourceLimit);
+        assert!(failure.message.unwrap().contains("factor of the matrix"));
+        assert!(estimate.check(None).is_ok());
+        assert!(Estimate::of_chart(20, 20).check(Some(100_000_000)).is_ok());
+        assert_eq!(Estimate::of_chart(u64::MAX, u64::MAX).total(), u64::MAX);
+    }
+}

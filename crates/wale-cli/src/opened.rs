@@ -1,0 +1,171 @@
+//! Scenes and runs opened for a command.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use wale::geometry::{Curve, CurveSettings, Solid, curves, solid_at};
+use wale::model::{Frame, Network};
+use wale::pattern::knit;
+use wale::record::{RecordError, RunReader};
+use wale::scene::{ErrorClass, Scene, SceneError, SceneFile};
+use wale::simulation::Simulation;
+
+use crate::arguments::FrameChoice;
+use crate::estimate::Estimate;
+use crate::exit::{Code, Failure};
+use crate::machine;
+
+/// A scene that has been read and found sound.
+pub struct OpenedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// The files it was read from.
+    pub inputs: Vec<PathBuf>,
+}
+
+impl OpenedScene {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// What is wrong with it, with the place underlined.
+    pub fn read(path: &Path) -> Result<Self, Failure> {
+        let SceneFile { scene, inputs } = Scene::read_with_inputs(path).map_err(scene_failure)?;
+        Ok(Self { scene, inputs })
+    }
+
+    /// Rows and columns of the chart.
+    #[must_use]
+    pub fn chart_size(&self) -> [u64; 2] {
+        [self.scene.chart.row_count() as u64, self.scene.chart.column_count() as u64]
+    }
+
+    /// The scene with every default written out.
+    ///
+    /// # Errors
+    /// Never for a scene that was read from a file.
+    pub fn resolved(&self) -> Result<String, Failure> {
+        self.scene.resolved_toml().map_err(scene_failure)
+    }
+
+    /// Refuses a scene that takes more memory than `limit`, or than is free.
+    ///
+    /// # Errors
+    /// With the estimate and its largest item.
+    pub fn check_memory(&self, limit: Option<u64>) -> Result<(), Failure> {
+        let [rows, columns] = self.chart_size();
+        Estimate::of_chart(rows, columns).check(limit.or_else(machine::available_memory))
+    }
+
+    /// The fabric before it is placed.
+    #[must_use]
+    pub fn network(&self) -> Network {
+        network(&self.scene)
+    }
+
+    /// Sets up the simulation.
+    #[must_use]
+    pub fn simulation(&self) -> Simulation {
+        Simulation::new(self.network(), &self.scene.yarn, &self.scene.fabric, self.scene.plan.clone())
+    }
+
+    /// Starts as many threads as the command line or else the scene asks for, and says how many there are.
+    ///
+    /// # Errors
+    /// When they cannot be started.
+    pub fn use_threads(&self, asked: Option<u16>) -> Result<usize, Failure> {
+        machine::use_threads(asked.map(usize::from).or(self.scene.plan.simulation.threads))
+    }
+}
+
+/// The fabric of a scene, in its colour.
+fn network(scene: &Scene) -> Network {
+    let mut network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    network.yarn_color.fill(scene.yarn_color);
+    network
+}
+
+/// An error in a scene, with the code of its class.
+fn scene_failure(error: SceneError) -> Failure {
+    let code = match error.class() {
+        ErrorClass::BadInput => Code::BadInput,
+        ErrorClass::ResourceLimit => Code::ResourceLimit,
+        ErrorClass::InputOutput => Code::Io,
+    };
+    Failure::report(code, &miette::Report::new(error))
+}
+
+/// A run that has been opened to be shown, and the frames chosen of it.
+pub struct OpenedRun {
+    /// The run folder.
+    pub reader: RunReader,
+    /// Its scene.
+    pub scene: Scene,
+    /// Its fabric.
+    pub network: Network,
+    /// The chosen frames.
+    pub frames: Range<u64>,
+}
+
+impl OpenedRun {
+    /// Opens a run folder.
+    ///
+    /// # Errors
+    /// When it is none, or has not the frames that are asked for.
+    pub fn open(folder: &Path, choice: FrameChoice) -> Result<Self, Failure> {
+        let reader = RunReader::open(folder)?;
+        let scene = Scene::read(&reader.scene_path()).map_err(scene_failure)?;
+        let count = reader.frames().count()?;
+        let frames = choice.among(count).ok_or_else(|| {
+            Failure::new(Code::Usage, format_args!("{}: there are {count} frames, from 0 on", folder.display()))
+        })?;
+        Ok(Self { network: network(&scene), reader, scene, frames })
+    }
+
+    /// A frame, checked to be one of this fabric.
+    ///
+    /// # Errors
+    /// When it is damaged or belongs to another fabric.
+    pub fn frame(&self, index: u64) -> Result<Frame, RecordError> {
+        let frame = self.reader.frames().read(index)?;
+        let fits =
+            frame.positions.len() == self.network.node_count() && frame.sliding.len() == self.network.pass_count();
+        if fits {
+            Ok(frame)
+        } else {
+            Err(RecordError::Damaged {
+                path: self.reader.frames().path(index),
+                reason: "it belongs to another fabric".to_owned(),
+            })
+        }
+    }
+
+    /// How the yarns are drawn.
+    #[must_use]
+    pub fn curve_settings(&self) -> CurveSettings {
+        CurveSettings::new(self.scene.yarn.radius)
+    }
+
+    /// The yarns of a frame.
+    #[must_use]
+    pub fn curves(&self, frame: &Frame) -> Vec<Curve> {
+        curves(&self.network, frame, &self.curve_settings())
+    }
+
+    /// The obstacles at the time of a frame.
+    #[must_use]
+    pub fn solids(&self, frame: &Frame) -> Vec<Solid> {
+        self.scene.plan.obstacles.iter().map(|obstacle| solid_at(obstacle, frame.time)).collect()
+    }
+
+    /// Where a product of this run goes if nothing else is said: into its folder `results`.
+    ///
+    /// # Errors
+    /// When that cannot be made.
+    pub fn results(&self, out: Option<&PathBuf>, name: &str) -> Result<PathBuf, Failure> {
+        let path = out.cloned().unwrap_or_else(|| self.reader.path().join("results").join(name));
+        if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+            std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
+        }
+        Ok(path)
+    }
+}

@@ -1,0 +1,171 @@
+//! A run that is interrupted in any way goes on to the same bits, on any number of threads.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{
+    Workshop, assert_fails, assert_same_bits, assert_succeeds, code, end_of, frame_count, told, wait_for, wale,
+};
+
+/// Runs the scene without interruption.
+fn whole(workshop: &Workshop) -> std::path::PathBuf {
+    assert_succeeds(&workshop.run("scene.toml", "whole.run", &["-j", "1"]));
+    workshop.path("whole.run")
+}
+
+fn status(run: &Path) -> String {
+    fs::read_to_string(run.join("STATUS")).unwrap_or_default().trim().to_owned()
+}
+
+/// Starts a run and waits until it has written so many frames.
+fn started(workshop: &Workshop, name: &str, frames: usize) -> std::process::Child {
+    let (scene, out) = (workshop.text("scene.toml"), workshop.text(name));
+    let child = workshop.start(&["run", &scene, "--out", &out, "-j", "2"]);
+    wait_for("frames", || frame_count(&workshop.path(name)) >= frames);
+    child
+}
+
+fn signal(child: &std::process::Child, name: &str) {
+    let sent = std::process::Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let workshop = Workshop::new();
+    let whole = whole(&workshop);
+    for threads in ["2", "4"] {
+        let name = format!("threads{threads}.run");
+        assert_succeeds(&workshop.run("scene.toml", &name, &["-j", threads]));
+        assert_same_bits(&whole, &workshop.path(&name));
+    }
+}
+
+#[test]
+fn killed_at_any_moment_and_resumed_gives_the_same_bits() {
+    let workshop = Workshop::new();
+    let whole = whole(&workshop);
+    let frames = frame_count(&whole);
+    let mut killed = 0;
+    for (attempt, share) in [0.0, 0.2, 0.45, 0.7, 0.9].into_iter().enumerate() {
+        let name = format!("killed{attempt}.run");
+        let mut child = started(&workshop, &name, 1 + (share * frames as f64) as usize);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let run = workshop.path(&name);
+        if status(&run) == "done" {
+            continue;
+        }
+        killed += 1;
+        if status(&run).is_empty() {
+            // Killed before it was a run: begun anew.
+            assert_succeeds(&workshop.run("scene.toml", &name, &["--force"]));
+        } else {
+            // Killed once more on the way, and then to the end, on another number of threads.
+            let again = workshop.start(&["resume", &workshop.text(&name)]);
+            let before = frame_count(&run);
+            let mut again = again;
+            wait_for("more frames", || frame_count(&run) > before || again.try_wait().unwrap().is_some());
+            let _ = again.kill();
+            again.wait().unwrap();
+            assert_succeeds(&wale(&["resume", &workshop.text(&name), "-j", "4"]));
+        }
+        assert_same_bits(&whole, &run);
+    }
+    assert!(killed >= 2, "only {killed} runs were still going when they were killed");
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_stop_after_a_checkpoint_and_tell_how_to_go_on() {
+    let workshop = Workshop::new();
+    let whole = whole(&workshop);
+    for (name, signal_name, expected) in [("int.run", "-INT", 130), ("term.run", "-TERM", 143)] {
+        let child = started(&workshop, name, 2);
+        signal(&child, signal_name);
+        let output = end_of(child);
+        assert_eq!(code(&output), expected, "{}", told(&output));
+        assert!(told(&output).contains("wale resume"), "{}", told(&output));
+        assert_eq!(status(&workshop.path(name)), "stopped");
+        assert_succeeds(&wale(&["resume", &workshop.text(name)]));
+        assert_same_bits(&whole, &workshop.path(name));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn sigusr1_takes_a_checkpoint_and_goes_on() {
+    let workshop = Workshop::new();
+    let child = started(&workshop, "usr.run", 2);
+    signal(&child, "-USR1");
+    assert_succeeds(&end_of(child));
+    assert_eq!(status(&workshop.path("usr.run")), "done");
+}
+
+#[cfg(unix)]
+#[test]
+fn two_runs_in_one_folder_are_refused() {
+    let workshop = Workshop::new();
+    let child = started(&workshop, "a.run", 1);
+    let output = workshop.run("scene.toml", "a.run", &["--force"]);
+    assert_fails(&output, 6, &["in use by process", &child.id().to_string()]);
+    assert_fails(&wale(&["resume", &workshop.text("a.run")]), 6, &["in use"]);
+    signal(&child, "-INT");
+    assert_eq!(code(&end_of(child)), 130);
+}
+
+#[test]
+fn a_run_is_not_overwritten_and_a_finished_one_not_resumed() {
+    let workshop = Workshop::new();
+    let whole = whole(&workshop);
+    let before = common::lasting_files(&whole);
+    assert_fails(&workshop.run("scene.toml", "whole.run", &[]), 3, &["--force", "wale resume"]);
+    let output = wale(&["resume", &workshop.text("whole.run")]);
+    assert_succeeds(&output);
+    assert!(told(&output).contains("done already"), "{}", told(&output));
+    assert!(before == common::lasting_files(&whole));
+    assert_succeeds(&workshop.run("scene.toml", "whole.run", &["--force"]));
+    assert!(before == common::lasting_files(&whole));
+}
+
+#[cfg(unix)]
+#[test]
+fn damage_changes_and_other_versions_are_told() {
+    let workshop = Workshop::new();
+    let child = started(&workshop, "a.run", 4);
+    signal(&child, "-TERM");
+    assert_eq!(code(&end_of(child)), 143);
+    let (run, name) = (workshop.path("a.run"), workshop.text("a.run"));
+
+    let environment = fs::read_to_string(run.join("environment.json")).unwrap();
+    fs::write(run.join("environment.json"), environment.replace("\"version\": \"", "\"version\": \"9.")).unwrap();
+    assert_fails(&wale(&["resume", &name]), 3, &["written by wale 9."]);
+    fs::write(run.join("environment.json"), environment.replace("\"format\": 1", "\"format\": 2")).unwrap();
+    assert_fails(&wale(&["resume", &name]), 3, &["format 2"]);
+    assert_fails(&wale(&["render", &name]), 3, &["format 2"]);
+    fs::write(run.join("environment.json"), environment).unwrap();
+
+    let scene = fs::read_to_string(workshop.path("scene.toml")).unwrap();
+    fs::write(workshop.path("scene.toml"), scene.replace("duration = 0.1", "duration = 0.2")).unwrap();
+    assert_fails(&wale(&["resume", &name]), 3, &["scene.toml", "changed since"]);
+    fs::write(workshop.path("scene.toml"), scene).unwrap();
+
+    // The latest checkpoint is damaged: the one before stands in, and it is told.
+    let latest = fs::read_to_string(run.join("checkpoints/LATEST")).unwrap();
+    let latest = run.join("checkpoints").join(latest.trim());
+    let bytes = fs::read(&latest).unwrap();
+    fs::write(&latest, &bytes[..bytes.len() / 2]).unwrap();
+    let output = wale(&["resume", &name]);
+    assert_succeeds(&output);
+    assert!(told(&output).contains("damaged"), "{}", told(&output));
+    assert_same_bits(&whole(&workshop), &run);
+
+    // Both are.
+    fs::write(run.join("STATUS"), "running\n").unwrap();
+    for entry in fs::read_dir(run.join("checkpoints")).unwrap() {
+        fs::write(entry.unwrap().path(), "rubbish").unwrap();
+    }
+    assert_fails(&wale(&["resume", &name]), 3, &["no checkpoint that can be read"]);
+}

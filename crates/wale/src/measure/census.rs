@@ -1,0 +1,134 @@
+//! Counts of a network's parts, and the amounts of yarn in it.
+
+use serde::Serialize;
+
+use crate::model::{Network, NodeId, YarnCard};
+
+/// What a network consists of.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Census {
+    /// Rows of the chart.
+    pub rows: u32,
+    /// Columns of the chart.
+    pub columns: u32,
+    /// Loops.
+    pub loops: usize,
+    /// Loops that are knit stitches as seen from the front.
+    pub knit_loops: usize,
+    /// Stitch contacts.
+    pub stitch_contacts: usize,
+    /// Yarns.
+    pub yarns: usize,
+    /// Nodes.
+    pub nodes: usize,
+    /// Nodes by the number of passes stacked there: the first entry counts those with none.
+    pub nodes_by_stack_size: Vec<usize>,
+    /// Passes of yarns through nodes.
+    pub passes: usize,
+    /// Degrees of freedom: three a node, and one for each pass that slides.
+    pub degrees_of_freedom: usize,
+    /// Rest length of all yarns \[m\].
+    pub yarn_length_m: f64,
+    /// Mass of all yarns \[kg\].
+    pub mass_kg: f64,
+}
+
+impl Census {
+    /// Counts a network.
+    #[must_use]
+    pub fn of(network: &Network, yarn: &YarnCard) -> Self {
+        let mut nodes_by_stack_size = Vec::new();
+        for node in 0..network.node_count() {
+            let size = network.stack(NodeId::new(node)).len();
+            if nodes_by_stack_size.len() <= size {
+                nodes_by_stack_size.resize(size + 1, 0);
+            }
+            nodes_by_stack_size[size] += 1;
+        }
+        let sliding = network.pass_slides.iter().filter(|slides| **slides).count();
+        let yarn_length = network.yarn_length();
+        Self {
+            rows: network.chart_size[0],
+            columns: network.chart_size[1],
+            loops: network.loops.len(),
+            knit_loops: network.loops.iter().filter(|info| info.knit).count(),
+            stitch_contacts: network.stitches.len(),
+            yarns: network.yarn_count(),
+            nodes: network.node_count(),
+            nodes_by_stack_size,
+            passes: network.pass_count(),
+            degrees_of_freedom: 3 * network.node_count() + sliding,
+            yarn_length_m: yarn_length,
+            mass_kg: yarn_length * yarn.linear_density,
+        }
+    }
+}
+
+impl Census {
+    /// Mass an area \[kg/m²\] of a fabric of this stitch density \[1/m²\]; the yarn of its edges counts as loops do.
+    #[must_use]
+    pub fn areal_mass(&self, stitch_density: f64) -> f64 {
+        if self.loops == 0 { 0.0 } else { self.mass_kg * stitch_density / self.loops as f64 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::FabricCard;
+    use crate::pattern::{Chart, Side, Working, knit};
+
+    fn cards() -> (YarnCard, FabricCard) {
+        let yarn = YarnCard {
+            linear_density: 4e-4,
+            radius: 8e-4,
+            stretch_stiffness: 8.0,
+            bending_stiffness: 2e-8,
+            friction_coefficient: 0.3,
+            mass_damping: 0.0,
+            stiffness_damping: 0.0,
+            plies: 2,
+            twist: 200.0,
+        };
+        let fabric = FabricCard {
+            loop_length: 16e-3,
+            path_ratio: 1.0,
+            transition_length: 0.0,
+            stitch_length: 2e-3,
+            wale_spacing: 4.5e-3,
+            course_spacing: 3.5e-3,
+            wrapping_stiffness: 1e-4,
+            wrapping_angle_course: 1.5,
+            wrapping_angle_leg: 1.5,
+            bend_angle_foot_head: 1.0,
+            bend_angle_leg: 0.5,
+            length_stiffness: 0.01,
+            spacing_stiffness: 0.01,
+            spacing_leg: 1e-3,
+            spacing_head_sinker: 1e-3,
+            anchor_stiffness: 10.0,
+            residual_compression: 1e-5,
+        };
+        (yarn, fabric)
+    }
+
+    #[test]
+    fn every_node_has_a_stack_and_every_pass_is_in_one() {
+        let (yarn, fabric) = cards();
+        for (chart, knit_share) in [(Chart::stockinette(), 1.0), (Chart::reverse_stockinette(), 0.0)] {
+            let chart = chart.repeat(7, 6).unwrap();
+            let network = knit::fabric(&chart, Working::Flat { first_row: Side::RightSide }, &fabric);
+            let census = Census::of(&network, &yarn);
+            assert_eq!(census.nodes_by_stack_size.iter().sum::<usize>(), census.nodes);
+            let stacked: usize = census.nodes_by_stack_size.iter().enumerate().map(|(size, count)| size * count).sum();
+            assert_eq!(stacked, census.passes);
+            assert_eq!((census.rows, census.columns, census.loops), (6, 7, 42));
+            assert_eq!(census.knit_loops as f64, knit_share * 42.0);
+            assert!(census.degrees_of_freedom > 3 * census.nodes && census.degrees_of_freedom < 5 * census.nodes);
+            // The loops alone take 42 loop lengths; edges add some.
+            let loops = 42.0 * fabric.loop_length;
+            assert!(census.yarn_length_m > loops && census.yarn_length_m < 2.0 * loops, "{census:?}");
+            assert!((census.mass_kg - census.yarn_length_m * 4e-4).abs() < 1e-15);
+        }
+    }
+}
