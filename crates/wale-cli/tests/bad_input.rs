@@ -78,7 +78,8 @@ fn a_scene_larger_than_memory_is_refused_up_front() {
     assert_fails(&output, 4, &["largest item"]);
     assert!(!workshop.path("a.run").exists());
 
-    let huge = common::scene(0.1).replace("columns = 6", "columns = 4000000000").replace("rows = 6", "rows = 4000000000");
+    let huge =
+        common::scene(0.1).replace("columns = 6", "columns = 4000000000").replace("rows = 6", "rows = 4000000000");
     fs::write(workshop.path("huge.toml"), huge).unwrap();
     let output = wale(&["check", &workshop.text("huge.toml")]);
     assert!([3, 4].contains(&code(&output)), "{}", told(&output));

@@ -77,12 +77,7 @@ impl Workshop {
     }
 
     pub fn start(&self, arguments: &[&str]) -> Child {
-        program()
-            .args(arguments)
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap()
+        program().args(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     }
 }
 
