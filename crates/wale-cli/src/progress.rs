@@ -76,14 +76,6 @@ impl Progress {
         }
     }
 
-    /// Says something between, without breaking the bar.
-    pub fn note(&self, text: &str) {
-        match &self.voice {
-            Voice::Bar(bar) => bar.suspend(|| note(text)),
-            Voice::Silent | Voice::Lines { .. } => note(text),
-        }
-    }
-
     /// Takes the bar away.
     pub fn end(&self) {
         if let Voice::Bar(bar) = &self.voice {

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use wale::measure::{Census, Shape};
+use wale::model::{FabricCard, YarnCard};
 use wale::record::{RecordError, RunFolder, Status};
 use wale::simulation::{Simulation, StepReport};
 
@@ -22,6 +23,10 @@ pub struct RunLoop {
     pub simulation: Simulation,
     /// Where it is written.
     pub run: RunFolder,
+    /// The yarn.
+    pub yarn: YarnCard,
+    /// The fabric card.
+    pub card: FabricCard,
     /// Flags of the operating system's signals.
     pub signals: Signals,
     /// Whether only errors are told.
@@ -124,8 +129,8 @@ impl RunLoop {
 
     fn summary(&mut self, seconds: f64, steps: u64) -> Value {
         let report = self.simulation.standing();
-        let (network, yarn) = (self.simulation.network(), &self.simulation.system().yarn);
-        let census = Census::of(network, yarn);
+        let network = self.simulation.network();
+        let census = Census::of(network, &self.yarn, &self.card);
         let shape = Shape::of(network, &self.simulation.frame());
         let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
         let grips: Vec<Value> = report

@@ -40,5 +40,6 @@ pub fn resume(arguments: &Resume) -> Result<(), Failure> {
         return Err(RecordError::OtherScene { path: arguments.run.clone() }.into());
     }
     let run = interrupted.resume(&columns)?;
-    RunLoop { simulation, run, signals, quiet: arguments.manner.quiet }.go()
+    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
+    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
 }

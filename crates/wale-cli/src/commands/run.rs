@@ -43,7 +43,8 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
             out.display()
         ));
     }
-    RunLoop { simulation, run, signals, quiet: arguments.manner.quiet }.go()
+    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
+    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
 }
 
 /// `scenes/swatch.toml` runs into `swatch.run` where the program was called.
