@@ -102,6 +102,7 @@ fn cards() -> (YarnCard, FabricCard) {
     };
     let card = FabricCard {
         loop_length: LOOP,
+        path_ratio: 1.0,
         transition_length: 0.085,
         stitch_length: stitch,
         wale_spacing: 0.317 * LOOP,

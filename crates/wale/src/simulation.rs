@@ -220,6 +220,7 @@ impl Simulation {
         let newton = NewtonSettings {
             max_iterations: settings.newton_iterations as usize,
             tolerance: settings.newton_tolerance * self.system.yarn.radius,
+            convexity: 1.0,
         };
         let (obstacles, touches) = (&self.plan.obstacles, &self.touches);
         let report = self.newton.minimise(&mut self.system, &mut self.q, &newton, |system, q| {

@@ -56,7 +56,7 @@ pub struct Workshop {
 impl Workshop {
     pub fn new() -> Self {
         let workshop = Self { folder: tempfile::tempdir().unwrap() };
-        fs::write(workshop.path("scene.toml"), scene(0.1)).unwrap();
+        fs::write(workshop.path("scene.toml"), scene(0.08)).unwrap();
         workshop
     }
 

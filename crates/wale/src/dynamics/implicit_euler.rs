@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 
-use super::linear::Linear;
+use super::linear::{Linear, LinearReport};
 use super::system::{System, Terms, Workspace};
 use crate::fabric::coordinates::BLOCK;
 use crate::fabric::elements::Linearisation;
@@ -17,6 +17,9 @@ pub struct NewtonSettings {
     pub max_iterations: usize,
     /// Largest move of a node in the last iteration \[m\].
     pub tolerance: f64,
+    /// Convexity of the Hessian that a step begins with: 1 is Gauss–Newton, 0 is Newton's own matrix wherever that is
+    /// positive definite (`docs/design/002-newton.md` has the measurements).
+    pub convexity: f64,
 }
 
 /// What a step took.
@@ -63,6 +66,8 @@ pub struct Newton {
     /// Which slots are unknowns.
     free: Vec<bool>,
     linear: Linear,
+    /// Convexity of the Hessian that the next iteration tries.
+    convexity: f64,
     /// Scratch of sums.
     pub work: Workspace,
 }
@@ -79,6 +84,7 @@ impl Newton {
             trial: vec![0.0; n],
             free: system.coordinates.free().to_vec(),
             linear: Linear::None,
+            convexity: 1.0,
             work: Workspace::default(),
         }
     }
@@ -103,28 +109,12 @@ impl Newton {
         settings: &NewtonSettings,
         mut renew: impl FnMut(&mut System, &[f64]),
     ) -> Result<NewtonReport, StepError> {
+        // Every step starts alike, whatever came before: a resumed run must find the same bits.
+        self.convexity = settings.convexity;
         let mut report = NewtonReport { last_move: f64::INFINITY, ..NewtonReport::default() };
         while report.iterations < settings.max_iterations {
             renew(system, q);
-            let energy = system.linearise(
-                Terms::Dynamic,
-                Linearisation::Convex,
-                q,
-                &mut self.gradient,
-                &mut self.matrix,
-                &mut self.work,
-            );
-            if !energy.is_finite() {
-                return Err(StepError::NotFinite);
-            }
-            for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
-                *d = if *free { -g } else { 0.0 };
-            }
-            self.matrix.fix_slots(&self.free, 1.0);
-            let solved = self
-                .linear
-                .solve(system, &self.matrix, &self.free, 0.0, &mut self.direction)
-                .map_err(|error| StepError::Linear(error.to_string()))?;
+            let (energy, solved) = self.solve(system, q)?;
             report.linear_iterations += solved.iterations;
             report.iterations += 1;
             let slope: f64 = self.direction.iter().zip(&self.gradient).map(|(d, g)| d * g).sum();
@@ -140,6 +130,37 @@ impl Newton {
             }
         }
         Ok(report)
+    }
+
+    /// Finds the search direction at `q`: Newton's own where its matrix is positive definite, else the least convex
+    /// blend that is. Returns the energy and what the linear solve took.
+    fn solve(&mut self, system: &System, q: &[f64]) -> Result<(f64, LinearReport), StepError> {
+        loop {
+            let energy = system.linearise(
+                Terms::Dynamic,
+                Linearisation::Blended(self.convexity),
+                q,
+                &mut self.gradient,
+                &mut self.matrix,
+                &mut self.work,
+            );
+            if !energy.is_finite() {
+                return Err(StepError::NotFinite);
+            }
+            for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
+                *d = if *free { -g } else { 0.0 };
+            }
+            self.matrix.fix_slots(&self.free, 1.0);
+            match self.linear.solve(system, &self.matrix, &self.free, 0.0, &mut self.direction) {
+                Ok(report) => {
+                    // Try again with less next time.
+                    self.convexity = if self.convexity > 0.05 { 0.5 * self.convexity } else { 0.0 };
+                    return Ok((energy, report));
+                }
+                Err(error) if self.convexity >= 1.0 => return Err(StepError::Linear(error.to_string())),
+                Err(_) => self.convexity = (2.0 * self.convexity).clamp(0.1, 1.0),
+            }
+        }
     }
 
     /// Moves `q` along the direction as far as the energy falls enough; returns the step length.

@@ -258,7 +258,7 @@ impl System {
             work.gradient.fill(0.0);
             let mut out = ChunkOutput { rows, gradient: &mut work.gradient, matrix: None };
             work.energy =
-                self.terms(terms).map(|term| term.accumulate(work.chunk, q, Linearisation::Convex, &mut out)).sum();
+                self.terms(terms).map(|term| term.accumulate(work.chunk, q, Linearisation::CONVEX, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }

@@ -162,7 +162,7 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
                 }
                 Some(matrix) => {
                     let local = match linearisation {
-                        Linearisation::Convex => element.convex(&local_q),
+                        Linearisation::Blended(convexity) => element.blended(&local_q, convexity),
                         Linearisation::Exact => element.exact(&local_q),
                     };
                     scatter_gradient(stencil, &local.gradient, &out.rows, out.gradient);
@@ -280,7 +280,7 @@ mod tests {
                 let range = chunks.rows(chunk);
                 let (start, end) = (range.start * 5, range.end * 5);
                 let mut out = ChunkOutput { rows: range, gradient: &mut gradient[start..end], matrix: Some(&mut rows) };
-                energy += term.accumulate(chunk, &q, Linearisation::Convex, &mut out);
+                energy += term.accumulate(chunk, &q, Linearisation::CONVEX, &mut out);
             }
             let owned: f64 = (0..chunks.count()).map(|chunk| term.chunk_energy(chunk, &q)).sum();
             assert!((owned - energy).abs() < 1e-12 * energy);

@@ -57,6 +57,19 @@ impl Element<12> for Wrapping {
         local
     }
 
+    fn blended(&self, q: &[f64; 12], convexity: f64) -> Local<12> {
+        let hinge = Hinge::new(q);
+        let (energy, gradient, weight) = self.value(&hinge);
+        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
+        local.add_square(self.stiffness * weight, &hinge.gradient);
+        if convexity < 1.0 {
+            let psi = self.sign * hinge.angle - self.rest_angle;
+            let slope = self.stiffness * weight * (psi - whole_turns(psi)) * self.sign;
+            add_angle_curvature(q, (1.0 - convexity) * slope, &mut local.hessian);
+        }
+        local
+    }
+
     fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
         let (energy, gradient, _) = self.value(&Hinge::new(q));
         (energy, gradient)
@@ -90,6 +103,70 @@ pub fn wrapping_angle<T: Real>(q: &[T; 12]) -> T {
     let vb = cross(back, sub(x3, x1));
     let e = scale(axis, T::constant(1.0) / dot(axis, axis).sqrt());
     dot(e, cross(va, vb)).atan2(dot(va, vb))
+}
+
+/// Adds `factor` times the Hessian of the wrapping angle by `x₀ x₁ x₃ x₄`.
+///
+/// By the axis `A = x₁ − x₀` and the sides `p = x₄ − x₁`, `r = x₃ − x₁`, with `m = v/|v|²` of `v_a = A × p` and
+/// `v_b = r × A`, the gradient of `ψ` is `(p·e) m_a + (r·e) m_b`, `−|A| m_a`, `−|A| m_b`; this is its derivative, a
+/// shorter form of [Cirio2017, Eq. 16].
+fn add_angle_curvature(q: &[f64; 12], factor: f64, hessian: &mut [[f64; 12]; 12]) {
+    let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+    let (axis, p, r) = (sub(x1, x0), sub(x4, x1), sub(x3, x1));
+    let length = dot(axis, axis).sqrt();
+    let e = scale(axis, 1.0 / length);
+    let (va, vb) = (cross(axis, p), cross(r, axis));
+    let (a2, b2) = (dot(va, va), dot(vb, vb));
+    if a2 < 1e-60 || b2 < 1e-60 {
+        return;
+    }
+    let (ma, mb) = (scale(va, 1.0 / a2), scale(vb, 1.0 / b2));
+    let (pe, re) = (dot(p, e), dot(r, e));
+    // D = ∂m/∂v; `D [w]×` row by row: row i is (Dᵢ) × w, as Dᵢ·(w × x) = (Dᵢ × w)·x.
+    let times = |m: [f64; 3], v2: f64, w: [f64; 3]| -> [[f64; 3]; 3] {
+        std::array::from_fn(|i| {
+            let row: [f64; 3] = std::array::from_fn(|j| f64::from(u8::from(i == j)) / v2 - 2.0 * m[i] * m[j]);
+            cross(row, w)
+        })
+    };
+    let (da_axis, da_p) = (times(ma, a2, axis), times(ma, a2, p));
+    let (db_axis, db_r) = (times(mb, b2, axis), times(mb, b2, r));
+    // Blocks by (A, p, r); the p–r block is zero.
+    let mut by = [[[[0.0; 3]; 3]; 3]; 3];
+    for i in 0..3 {
+        for j in 0..3 {
+            by[1][1][i][j] = -length * da_axis[i][j];
+            by[2][2][i][j] = length * db_axis[i][j];
+            by[1][0][i][j] = -ma[i] * e[j] + length * da_p[i][j];
+            by[2][0][i][j] = -mb[i] * e[j] - length * db_r[i][j];
+            by[0][0][i][j] =
+                (ma[i] * (p[j] - pe * e[j]) + mb[i] * (r[j] - re * e[j])) / length - pe * da_p[i][j] + re * db_r[i][j];
+        }
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            by[0][1][i][j] = by[1][0][j][i];
+            by[0][2][i][j] = by[2][0][j][i];
+        }
+    }
+    // x₀ x₁ x₃ x₄ in terms of A, p, r.
+    const SIGNS: [[f64; 3]; 4] = [[-1.0, 0.0, 0.0], [1.0, -1.0, -1.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+    for a in 0..4 {
+        for b in 0..4 {
+            for s in 0..3 {
+                for t in 0..3 {
+                    let sign = factor * SIGNS[a][s] * SIGNS[b][t];
+                    if sign != 0.0 {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                hessian[3 * a + i][3 * b + j] += sign * by[s][t][i][j];
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
 }
 
 fn sine_squares<T: Real>(q: &[T; 12]) -> [T; 2] {
@@ -190,6 +267,22 @@ mod tests {
             let hinge = Hinge::new(&q);
             for i in 0..12 {
                 assert!((jet.gradient[i] - hinge.gradient[i]).abs() < 1e-11);
+            }
+        }
+    }
+
+    #[test]
+    fn the_angle_s_curvature_is_exact() {
+        let mut random = Random::new(15);
+        for _ in 0..20 {
+            let q = random_contact(&mut random);
+            let exact = wrapping_angle(&wale_numerics::jet::Jet::variables(&q)).hessian();
+            let mut hessian = [[0.0; 12]; 12];
+            add_angle_curvature(&q, 1.0, &mut hessian);
+            for i in 0..12 {
+                for j in 0..12 {
+                    assert!((hessian[i][j] - exact[i][j]).abs() < 1e-9, "{i} {j}: {} {}", hessian[i][j], exact[i][j]);
+                }
             }
         }
     }

@@ -300,11 +300,13 @@ fn a_stream_that_fails_is_an_error() {
     let settings = Settings::default();
     let usda = write_usda(&mut Full, &mut snapshots, &settings);
     assert!(matches!(usda, Err(ExportError::Stream(_))));
-    type Writer = fn(&mut Full, &Snapshot, &Settings) -> Result<(), ExportError>;
-    for write in [write_vtp as Writer, write_bcc, write_obj, write_ply] {
-        let result = write(&mut Full, &snapshots[0], &settings);
-        assert!(matches!(result, Err(ExportError::Stream(_))));
-    }
+    let results = [
+        write_vtp(&mut Full, &snapshots[0], &settings),
+        write_bcc(&mut Full, &snapshots[0], &settings),
+        write_obj(&mut Full, &snapshots[0], &settings),
+        write_ply(&mut Full, &snapshots[0], &settings),
+    ];
+    assert!(results.iter().all(|result| matches!(result, Err(ExportError::Stream(_)))));
 }
 
 #[test]

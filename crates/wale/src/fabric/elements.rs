@@ -50,12 +50,17 @@ impl<E: Element<N>, const N: usize> Elements<E, N> {
 }
 
 /// Which Hessian a linearisation uses.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub enum Linearisation {
-    /// Exact, indefinite far from equilibrium.
+    /// Exact by automatic differentiation, indefinite far from equilibrium.
     Exact,
+    /// In closed form, from nearly exact (0) to positive semi-definite element by element (1).
+    Blended(f64),
+}
+
+impl Linearisation {
     /// Positive semi-definite, element by element.
-    Convex,
+    pub const CONVEX: Self = Self::Blended(1.0);
 }
 
 /// Elements of some kind, as a solver that visits them one by one sees them.
@@ -93,7 +98,7 @@ impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
             let q = self.local(index, q);
             let local: Local<N> = match linearisation {
                 Linearisation::Exact => element.exact(&q),
-                Linearisation::Convex => element.convex(&q),
+                Linearisation::Blended(convexity) => element.blended(&q, convexity),
             };
             energy += local.energy;
             visit(&self.stencils[index], &local.gradient, &|i, j| local.hessian[i][j]);

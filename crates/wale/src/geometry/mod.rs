@@ -2,9 +2,9 @@
 
 pub mod coloring;
 pub mod curve;
+pub mod obstacle_solid;
 pub(crate) mod parallel_transport;
 mod passes;
-pub mod obstacle_solid;
 pub mod ply_twist;
 #[cfg(test)]
 pub(crate) mod sample_fabric;

@@ -375,6 +375,7 @@ mod tests {
     fn clasped_yarns_go_around_each_other_and_not_through() {
         let card = FabricCard {
             loop_length: 10e-3,
+            path_ratio: 1.0,
             transition_length: 0.1,
             stitch_length: 1.07e-3,
             wale_spacing: 3.2e-3,

@@ -124,8 +124,7 @@ impl Diagnostic for SceneError {
     }
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let (span, ..) = self.0.place.as_ref()?;
-        let label = self.0.why.clone().unwrap_or_else(|| "here".to_owned());
-        let label = LabeledSpan::new(Some(label), span.start, span.len());
+        let label = LabeledSpan::new(self.0.why.clone(), span.start, span.len());
         Some(Box::new(std::iter::once(label)))
     }
 }
