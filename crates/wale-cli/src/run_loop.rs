@@ -9,10 +9,10 @@ use wale::record::{RecordError, RunFolder, Status};
 use wale::simulation::{Simulation, StepReport};
 
 use crate::exit::{Code, Failure};
-use crate::observe;
 use crate::output::{self, span};
 use crate::progress::Progress;
 use crate::signals::Signals;
+use crate::{observe, products};
 
 /// Longest wall time without a checkpoint.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(600);
@@ -59,6 +59,7 @@ impl RunLoop {
         let (seconds, steps) = progress.spent();
         let summary = self.summary(seconds, steps);
         self.run.write_summary(&summary)?;
+        let made = products::make(self.run.path(), &self.simulation.plan().output)?;
         if !self.quiet {
             output::note(&format!(
                 "{}: done; {} steps and {} frames in {}",
@@ -67,6 +68,9 @@ impl RunLoop {
                 self.run.frame_count(),
                 span(seconds)
             ));
+            for path in made {
+                output::note(&format!("  {}", path.display()));
+            }
         }
         Ok(())
     }

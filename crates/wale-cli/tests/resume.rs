@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use common::{
-    Workshop, assert_fails, assert_same_bits, assert_succeeds, code, end_of, frame_count, lasting_files, scene,
-    told, wait_for, wale,
+    Workshop, assert_fails, assert_same_bits, assert_succeeds, code, end_of, frame_count, lasting_files, scene, told,
+    wait_for, wale,
 };
 
 /// The run of the scene without interruption, on one thread.
