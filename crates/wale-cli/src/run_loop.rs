@@ -77,6 +77,9 @@ impl RunLoop {
 
     fn steps_with(&mut self, progress: &mut Progress) -> Result<(), Failure> {
         if self.run.frame_count() == 0 {
+            if self.simulation.plan().simulation.relax_first {
+                self.relax();
+            }
             let report = self.simulation.standing();
             self.write_frame(&report)?;
             self.run.checkpoint(self.simulation.state())?;
@@ -123,6 +126,14 @@ impl RunLoop {
             }
         }
         Ok(())
+    }
+
+    fn relax(&mut self) {
+        let report = self.simulation.relax();
+        if !self.quiet {
+            let end = if report.converged { "at rest" } else { "not quite at rest" };
+            output::note(&format!("relaxed without friction in {} steps: {end}", report.steps));
+        }
     }
 
     fn write_frame(&mut self, report: &StepReport) -> Result<(), RecordError> {

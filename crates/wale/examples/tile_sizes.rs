@@ -17,7 +17,7 @@ fn main() {
         plies: 2,
         twist: 1.0,
     };
-    let ls = 0.107;
+    let ls = 0.09714842379766225;
     let card = FabricCard {
         loop_length: l,
         path_ratio: 1.0,
@@ -25,15 +25,15 @@ fn main() {
         stitch_length: ls,
         wale_spacing: 0.317,
         course_spacing: 0.241,
-        wrapping_stiffness: 2.1 * kb / (l * ls),
-        wrapping_angle_course: 2.15,
-        wrapping_angle_leg: 1.62,
-        bend_angle_foot_head: 0.43,
-        bend_angle_leg: 1.10,
+        wrapping_stiffness: 2.1474455654553606 * kb / (l * ls),
+        wrapping_angle_course: 2.087413521149509,
+        wrapping_angle_leg: 1.5688398517316826,
+        bend_angle_foot_head: 0.4629159385017176,
+        bend_angle_leg: 1.1122829701561612,
         length_stiffness: 3e4,
         spacing_stiffness: 2e3,
-        spacing_leg: 0.221,
-        spacing_head_sinker: 0.073,
+        spacing_leg: 0.21125728234404484,
+        spacing_head_sinker: 0.06803056665718818,
         anchor_stiffness: 1.0,
         residual_compression: 0.0,
     };
@@ -51,7 +51,7 @@ fn main() {
         for seed in 1..=3 {
             let network = knit::tile(&chart, &card);
             let start = std::time::Instant::now();
-            let t = relax_tile(&network, &yarn, &card, &TileSettings { seed, bed: 0.0, ..TileSettings::default() });
+            let t = relax_tile(&network, &yarn, &card, &TileSettings { seed, ..TileSettings::default() });
             if name == "stock" {
                 stock = (t.wale_spacing, t.course_spacing);
             }

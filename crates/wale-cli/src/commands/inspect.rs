@@ -23,7 +23,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     } else {
         let opened = OpenedScene::read(path)?;
         opened.check_memory(None)?;
-        network = opened.network();
+        network = opened.start().network;
         frame = initial(&network);
         run = None;
         scene = opened.scene;

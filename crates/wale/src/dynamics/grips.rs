@@ -51,7 +51,7 @@ impl Grips {
     /// Length of the memory.
     #[must_use]
     pub fn memory_len(&self) -> usize {
-        self.start[self.start.len() - 1]
+        self.start.last().copied().unwrap_or(0)
     }
     /// The next time after `time` at which a grip takes hold, lets go, or its motion has a key.
     #[must_use]

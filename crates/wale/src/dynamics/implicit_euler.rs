@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 
-use super::linear::{Linear, LinearReport};
+use super::linear::{Linear, LinearReport, LinearSettings};
 use super::system::{System, Terms, Workspace};
 use crate::fabric::coordinates::BLOCK;
 use crate::fabric::elements::Linearisation;
@@ -66,6 +66,7 @@ pub struct Newton {
     /// Which slots are unknowns.
     free: Vec<bool>,
     linear: Linear,
+    linear_settings: LinearSettings,
     /// Convexity of the Hessian that the next iteration tries.
     convexity: f64,
     /// Scratch of sums.
@@ -75,7 +76,7 @@ pub struct Newton {
 impl Newton {
     /// Takes the memory that steps of a system need.
     #[must_use]
-    pub fn new(system: &System) -> Self {
+    pub fn new(system: &System, linear_settings: LinearSettings) -> Self {
         let n = system.coordinates.len();
         Self {
             matrix: BlockMatrix::zeros(system.pattern().clone()),
@@ -84,9 +85,16 @@ impl Newton {
             trial: vec![0.0; n],
             free: system.coordinates.free().to_vec(),
             linear: Linear::None,
+            linear_settings,
             convexity: 1.0,
             work: Workspace::default(),
         }
+    }
+
+    /// Name of the linear solver in use.
+    #[must_use]
+    pub fn solver_name(&self) -> &'static str {
+        self.linear.name()
     }
 
     /// Says which slots are unknowns; the rest keep their values.
@@ -135,6 +143,10 @@ impl Newton {
     /// Finds the search direction at `q`: Newton's own where its matrix is positive definite, else the least convex
     /// blend that is. Returns the energy and what the linear solve took.
     fn solve(&mut self, system: &System, q: &[f64]) -> Result<(f64, LinearReport), StepError> {
+        if matches!(self.linear, Linear::None) {
+            self.linear = Linear::new(system, &self.free, self.linear_settings)
+                .map_err(|error| StepError::Linear(error.to_string()))?;
+        }
         loop {
             let energy = system.linearise(
                 Terms::Dynamic,
@@ -151,7 +163,7 @@ impl Newton {
                 *d = if *free { -g } else { 0.0 };
             }
             self.matrix.fix_slots(&self.free, 1.0);
-            match self.linear.solve(system, &self.matrix, &self.free, 0.0, &mut self.direction) {
+            match self.linear.solve(&self.matrix, &mut self.direction) {
                 Ok(report) => {
                     // Try again with less next time.
                     self.convexity = if self.convexity > 0.05 { 0.5 * self.convexity } else { 0.0 };

@@ -1,9 +1,16 @@
 //! Linear systems of a step: sparse Cholesky or conjugate gradients, behind one door.
 
+use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
+use wale_numerics::coarse_space::CoarseSpace;
+use wale_numerics::conjugate_gradient::{ConjugateGradient, ConjugateGradientEnd, ConjugateGradientSettings};
+use wale_numerics::incomplete_cholesky::{IncompleteCholesky, IncompleteCholeskySettings};
+use wale_numerics::preconditioner::Additive;
+use wale_numerics::prolongation::Prolongation;
 use wale_numerics::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 
 use super::system::System;
+use crate::model::LinearSolver;
 
 /// What a linear solve took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -12,37 +19,134 @@ pub struct LinearReport {
     pub iterations: usize,
 }
 
+/// Why a linear system could not be solved.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum LinearError {
+    /// The matrix is not positive definite, not finite, or its factor too large.
+    #[error(transparent)]
+    Factor(#[from] CholeskyError),
+    /// Conjugate gradients or their preconditioner met a direction of negative curvature.
+    #[error("conjugate gradients met negative curvature")]
+    NegativeCurvature,
+}
+
+/// Which solver, and how exact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearSettings {
+    /// Which solver.
+    pub solver: LinearSolver,
+    /// Preconditioned residual, relative to the start, at which conjugate gradients stop \[–\].
+    pub tolerance: f64,
+}
+
+impl Default for LinearSettings {
+    fn default() -> Self {
+        Self { solver: LinearSolver::Automatic, tolerance: 0.03 }
+    }
+}
+
+/// Unknowns up to which factors are cheaper than conjugate gradients (`wale bench solver` measures both).
+pub const DIRECT_UNKNOWNS: usize = 12_000;
+/// Loops between the nodes of the coarse space.
+const COARSE_LOOPS: f64 = 3.0;
+/// Most iterations of conjugate gradients.
+const MOST_ITERATIONS: usize = 300;
+
 /// A linear solver of symmetric positive definite block systems.
 pub enum Linear {
     /// Not set up yet, or the free slots changed.
     None,
     /// Sparse Cholesky factors with the symbolic part kept.
     Cholesky(Box<SparseCholesky>),
+    /// Conjugate gradients, preconditioned by block IC(0) and a bilinear coarse space.
+    ConjugateGradient(Box<Iterative>),
+}
+
+/// Memory of the iterative solver.
+pub struct Iterative {
+    preconditioner: Additive<IncompleteCholesky<f32>, CoarseSpace>,
+    gradient: ConjugateGradient,
+    right_side: Vec<f64>,
+    settings: ConjugateGradientSettings,
 }
 
 impl Linear {
-    /// Solves `A x = b` for the free slots; `x` holds `b` on entry.
+    /// Takes the memory for a system whose unknowns are the `free` slots.
+    ///
+    /// # Errors
+    /// If a factor would be too large.
+    pub fn new(system: &System, free: &[bool], settings: LinearSettings) -> Result<Self, LinearError> {
+        let unknowns = free.iter().filter(|free| **free).count();
+        let direct = match settings.solver {
+            LinearSolver::Automatic => unknowns <= DIRECT_UNKNOWNS,
+            LinearSolver::Cholesky => true,
+            LinearSolver::ConjugateGradient => false,
+        };
+        let pattern = system.pattern().clone();
+        if direct {
+            let factor = SparseCholesky::new(pattern, free, BlockOrder::MinimumDegree)?;
+            return Ok(Self::Cholesky(Box::new(factor)));
+        }
+        let prolongation = Prolongation::bilinear(system.chart_place(), COARSE_LOOPS);
+        Ok(Self::ConjugateGradient(Box::new(Iterative {
+            preconditioner: Additive(
+                IncompleteCholesky::new(pattern.clone(), IncompleteCholeskySettings::default()),
+                CoarseSpace::new(pattern, prolongation, free)?,
+            ),
+            gradient: ConjugateGradient::new(free.len()),
+            right_side: vec![0.0; free.len()],
+            settings: ConjugateGradientSettings {
+                max_iterations: MOST_ITERATIONS,
+                relative_tolerance: settings.tolerance,
+                absolute_tolerance: 0.0,
+            },
+        })))
+    }
+
+    /// Name of the solver, for reports.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Cholesky(_) => "sparse Cholesky",
+            Self::ConjugateGradient(_) => "conjugate gradients with block IC(0) and a coarse space",
+        }
+    }
+
+    /// Solves `A x = b`; `x` holds `b` on entry, zero in fixed slots, which were taken out of the matrix.
     ///
     /// # Errors
     /// If the matrix is not positive definite or not finite.
-    pub fn solve(
-        &mut self,
-        system: &System,
-        matrix: &BlockMatrix,
-        free: &[bool],
-        relative_shift: f64,
-        x: &mut [f64],
-    ) -> Result<LinearReport, CholeskyError> {
-        if matches!(self, Self::None) {
-            let factor = SparseCholesky::new(system.pattern().clone(), free, BlockOrder::MinimumDegree)?;
-            *self = Self::Cholesky(Box::new(factor));
-        }
+    pub fn solve(&mut self, matrix: &BlockMatrix, x: &mut [f64]) -> Result<LinearReport, LinearError> {
         match self {
-            Self::None => Ok(LinearReport::default()),
+            Self::None => Err(LinearError::NegativeCurvature),
             Self::Cholesky(factor) => {
-                factor.factor(matrix, relative_shift)?;
+                factor.factor(matrix, 0.0)?;
                 factor.solve_in_place(x);
                 Ok(LinearReport::default())
+            }
+            Self::ConjugateGradient(iterative) => {
+                let Additive(local, coarse) = &mut iterative.preconditioner;
+                local.factor(matrix).map_err(|_| LinearError::NegativeCurvature)?;
+                coarse.factor(matrix)?;
+                iterative.right_side.copy_from_slice(x);
+                x.fill(0.0);
+                let report = iterative.gradient.solve(
+                    matrix,
+                    &mut iterative.preconditioner,
+                    &iterative.right_side,
+                    x,
+                    None,
+                    &iterative.settings,
+                );
+                match report.end {
+                    ConjugateGradientEnd::Converged | ConjugateGradientEnd::IterationLimit => {
+                        Ok(LinearReport { iterations: report.iterations })
+                    }
+                    ConjugateGradientEnd::NegativeCurvature | ConjugateGradientEnd::Breakdown => {
+                        Err(LinearError::NegativeCurvature)
+                    }
+                }
             }
         }
     }

@@ -3,6 +3,7 @@
 pub mod grips;
 pub mod implicit_euler;
 pub mod linear;
+pub mod loop_shapes;
 pub mod state;
 pub mod step;
 pub mod system;

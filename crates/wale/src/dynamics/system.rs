@@ -103,16 +103,6 @@ impl System {
                 rubbing.push((pass, contact));
             }
         }
-        let mut damped: (Elements<_, 8>, Elements<_, 12>, Elements<_, 12>) = Default::default();
-        if yarn.stiffness_damping > 0.0 {
-            let rate = StretchRate { stiffness: 0.0, previous: 1.0 };
-            damped.0 = Elements { elements: vec![rate; segments.len()], stencils: segments.clone() };
-            let rate = BendRate { stiffness: 0.0, previous: 1.0 };
-            let stencils = mechanics.bending.stencils.clone();
-            damped.1 = Elements { elements: vec![rate; stencils.len()], stencils };
-            let elements = mechanics.wrapping.elements.iter().map(|&wrap| WrapRate { wrap }).collect();
-            damped.2 = Elements { elements, stencils: mechanics.wrapping.stencils.clone() };
-        }
         let mut yarn_at_node = vec![0.0; network.node_count()];
         let initial = coordinates.initial(network);
         for stencil in segments {
@@ -136,9 +126,9 @@ impl System {
             gravity: Term::new(gravity, &chunks),
             inertia: Term::new(inertia, &chunks),
             friction: Term::new(friction, &chunks),
-            stretch_rate: Term::new(damped.0, &chunks),
-            bend_rate: Term::new(damped.1, &chunks),
-            wrap_rate: Term::new(damped.2, &chunks),
+            stretch_rate: Term::new(Elements::default(), &chunks),
+            bend_rate: Term::new(Elements::default(), &chunks),
+            wrap_rate: Term::new(Elements::default(), &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
@@ -149,6 +139,7 @@ impl System {
             chunks,
             coordinates,
         };
+        system.set_stiffness_damping(yarn.stiffness_damping);
         let mut pairs = Vec::new();
         for term in system.terms(Terms::Dynamic) {
             term.pairs(&mut |a, b| pairs.push((a, b)));
@@ -162,6 +153,30 @@ impl System {
         let weight = (gravity * self.yarn.linear_density).to_array();
         for element in &mut self.gravity.set.elements {
             element.weight = weight;
+        }
+    }
+
+    /// Sets the stiffness damping `β` \[s\].
+    pub fn set_stiffness_damping(&mut self, beta: f64) {
+        self.yarn.stiffness_damping = beta;
+        let wanted = beta > 0.0;
+        if wanted == self.stretch_rate.set.is_empty() {
+            let count = |n: usize| if wanted { n } else { 0 };
+            let (segments, bends) = (&self.stretch.set.stencils, &self.bending.set.stencils);
+            let rate = StretchRate { stiffness: 0.0, previous: 1.0 };
+            let elements = vec![rate; count(segments.len())];
+            self.stretch_rate.set = Elements { elements, stencils: segments[..count(segments.len())].to_vec() };
+            let rate = BendRate { stiffness: 0.0, previous: 1.0 };
+            let elements = vec![rate; count(bends.len())];
+            self.bend_rate.set = Elements { elements, stencils: bends[..count(bends.len())].to_vec() };
+            let wraps = &self.wrapping.set;
+            self.wrap_rate.set = Elements {
+                elements: wraps.elements[..count(wraps.len())].iter().map(|&wrap| WrapRate { wrap }).collect(),
+                stencils: wraps.stencils[..count(wraps.len())].to_vec(),
+            };
+            self.stretch_rate.plan(&self.chunks);
+            self.bend_rate.plan(&self.chunks);
+            self.wrap_rate.plan(&self.chunks);
         }
     }
 

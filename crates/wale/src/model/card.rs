@@ -99,20 +99,20 @@ pub struct LoopProportions {
 impl Default for LoopProportions {
     fn default() -> Self {
         Self {
-            stitch_length: 0.107,
-            wrapping: 2.1,
-            wrapping_angle_course: 2.15,
-            wrapping_angle_leg: 1.62,
-            bend_angle_foot_head: 0.43,
-            bend_angle_leg: 1.10,
-            spacing_leg: 0.221,
-            spacing_head_sinker: 0.073,
+            stitch_length: 0.0971,
+            wrapping: 2.147,
+            wrapping_angle_course: 2.087,
+            wrapping_angle_leg: 1.569,
+            bend_angle_foot_head: 0.463,
+            bend_angle_leg: 1.112,
+            spacing_leg: 0.2113,
+            spacing_head_sinker: 0.0680,
             transition_length: 0.085,
-            wale_spacing: 0.317,
-            course_spacing: 0.241,
+            wale_spacing: 0.2993,
+            course_spacing: 0.2578,
             // Relaxed plain knit has W = ℓ/4.2 and C = ℓ/5.5 in real yarn (textile constants of fully relaxed cloth), the model the W and C above:
-            // 0.751 and 0.754.
-            path_ratio: 0.752,
+            // 0.795 and 0.705, of which this is the mean.
+            path_ratio: 0.75,
         }
     }
 }

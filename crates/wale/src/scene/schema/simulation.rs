@@ -28,12 +28,12 @@ pub struct SimulationText {
     /// Drag of still air: force per length of yarn and speed; none if left out. Air gives about 1e-3 Pa s at 1 m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub air_drag: Option<Quantity<Drag, NotNegative>>,
-    /// Whether the fabric is relaxed before time starts, without friction, gravity, obstacles and grips; true if left
+    /// Whether the fabric is relaxed before time starts, without friction, gravity, obstacles and grips; false if left
     /// out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relax_first: Option<bool>,
-    /// Whether a small patch is relaxed first and its loop shapes become the rest shapes of the whole fabric; false
-    /// if left out.
+    /// Whether a small patch is relaxed first and its loop shapes become those of the whole fabric's layout;
+    /// true if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rest_shape_compensation: Option<bool>,
     /// Whether yarns rub on each other; true if left out.

@@ -1,10 +1,17 @@
 //! The time loop: a fabric, what happens to it, and the steps from one frame to the next.
 
+mod relax;
+mod start;
+
+pub use relax::RelaxReport;
+pub use start::{Start, StartReport};
+
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::dynamics::grips::{GripReport, Grips};
 use crate::dynamics::implicit_euler::{Newton, NewtonReport, NewtonSettings, StepError};
+use crate::dynamics::linear::LinearSettings;
 use crate::dynamics::step::Touch;
 use crate::dynamics::system::{System, Workspace};
 use crate::dynamics::{State, terms};
@@ -80,7 +87,9 @@ impl Simulation {
         let network = placed(network, &plan);
         let mut system = System::new(&network, yarn, card);
         system.set_gravity(plan.simulation.gravity);
-        let newton = Newton::new(&system);
+        let linear =
+            LinearSettings { solver: plan.simulation.linear_solver, tolerance: plan.simulation.linear_tolerance };
+        let newton = Newton::new(&system, linear);
         let grips = Grips::new(&plan.grips, &network, &network.position);
         let coordinates = system.coordinates.initial(&network);
         let state = State {

@@ -1,0 +1,66 @@
+//! What a simulation starts from: the network of a chart, with the loop shapes of a relaxed repeat if wanted.
+
+use crate::dynamics::loop_shapes::lay_loop_shapes;
+use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
+use crate::model::{FabricCard, Network, YarnCard};
+use crate::pattern::{Chart, Working, knit};
+
+/// Most loops of a repeat that is relaxed for its loop shapes.
+pub const MOST_TILE_LOOPS: usize = 64;
+/// Starts from which a repeat is relaxed; the one of lowest energy is taken, because equilibria are not unique.
+const STARTS: u64 = 3;
+
+/// A fabric before anything happens to it.
+#[derive(Clone, Debug)]
+pub struct Start {
+    /// The network, flat or round, not yet placed in the world.
+    pub network: Network,
+    /// What the compensation did, if there was one.
+    pub compensation: Option<StartReport>,
+}
+
+/// What rest-shape compensation did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StartReport {
+    /// Relaxed over laid-out wale spacing: how much the width would have changed without compensation \[–\].
+    pub width_change: f64,
+    /// Relaxed over laid-out course spacing \[–\].
+    pub height_change: f64,
+    /// Whether the repeat came to rest.
+    pub converged: bool,
+}
+
+impl Start {
+    /// Lays out a chart; `compensate` gives every loop the shape that it has in the relaxed repeat
+    /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large keeps the plain layout.
+    #[must_use]
+    pub fn new(chart: &Chart, working: Working, yarn: &YarnCard, card: &FabricCard, compensate: bool) -> Self {
+        let mut network = knit::fabric(chart, working, card);
+        let repeat = chart.smallest_repeat();
+        if !compensate || repeat.loop_count() > MOST_TILE_LOOPS {
+            return Self { network, compensation: None };
+        }
+        let tile = knit::tile(&repeat, card);
+        let relaxed = relax_repeat(&tile, yarn, card);
+        lay_loop_shapes(&mut network, &tile, &relaxed, working == Working::Round);
+        let report = StartReport {
+            width_change: relaxed.wale_spacing / card.wale_spacing,
+            height_change: relaxed.course_spacing / card.course_spacing,
+            converged: relaxed.converged,
+        };
+        Self { network, compensation: Some(report) }
+    }
+}
+
+/// Relaxes a repeat from several starts and returns the one of lowest energy.
+fn relax_repeat(tile: &Network, yarn: &YarnCard, card: &FabricCard) -> TileEquilibrium {
+    let run = |seed| relax_tile(tile, yarn, card, &TileSettings { seed, ..TileSettings::default() });
+    let mut best = run(1);
+    for seed in 2..=STARTS {
+        let other = run(seed);
+        if (other.converged, -other.energy) > (best.converged, -best.energy) {
+            best = other;
+        }
+    }
+    best
+}
