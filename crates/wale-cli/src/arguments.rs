@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -196,6 +196,21 @@ pub struct Render {
     /// Size in pixels, such as `1600x1200`
     #[arg(long, value_name = "WxH", value_parser = parse_picture_size)]
     pub size: Option<[u32; 2]>,
+}
+
+impl Render {
+    /// The picture that is drawn of a run if nothing else is said.
+    #[must_use]
+    pub fn of(run: &Path) -> Self {
+        Self {
+            run: run.to_owned(),
+            out: None,
+            frames: FrameChoice::Last,
+            view: wale::picture::View::ThreeQuarter,
+            color: wale::picture::ColorMode::default(),
+            size: None,
+        }
+    }
 }
 
 /// `wale view`

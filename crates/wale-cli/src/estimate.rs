@@ -1,12 +1,26 @@
 //! What a scene will take, before anything is built: nodes, memory, files.
 
 use serde::Serialize;
+use wale::dynamics::linear::DIRECT_UNKNOWNS;
+use wale::model::LinearSolver;
 
 use crate::exit::{Code, Failure};
 use crate::output::bytes;
 
 /// Nodes of a loop inside a fabric \[Cirio2017\].
 const NODES_A_LOOP: f64 = 4.0;
+/// Coordinates of a node that can move, nearly.
+const UNKNOWNS_A_NODE: f64 = 5.0;
+/// Bytes a node of yarns, stacks, contacts and the initial layout.
+const NETWORK_BYTES: f64 = 700.0;
+/// Bytes a node of all energies' elements and lists.
+const ENERGY_BYTES: f64 = 2600.0;
+/// Bytes a node of eleven blocks of five by five numbers.
+const MATRIX_BYTES: f64 = 11.0 * 25.0 * 8.0;
+/// Bytes of factor a node and doubling of the nodes.
+const FACTOR_BYTES: f64 = 120.0;
+/// Bytes a node of the incomplete factor and the coarse space.
+const PRECONDITIONER_BYTES: f64 = 1500.0;
 /// Nodes of a loop at an edge besides those: cast-on, bind-off and turns.
 const NODES_AN_EDGE_LOOP: f64 = 2.0;
 
@@ -22,21 +36,29 @@ pub struct Estimate {
 impl Estimate {
     /// For a fabric of so many rows and columns.
     #[must_use]
-    pub fn of_chart(rows: u64, columns: u64) -> Self {
+    pub fn of_chart(rows: u64, columns: u64, solver: LinearSolver) -> Self {
         let (rows, columns) = (rows as f64, columns as f64);
-        Self::of_nodes(NODES_A_LOOP * rows * columns + NODES_AN_EDGE_LOOP * (rows + columns))
+        Self::of_nodes(NODES_A_LOOP * rows * columns + NODES_AN_EDGE_LOOP * (rows + columns), solver)
     }
 
-    fn of_nodes(nodes: f64) -> Self {
-        // Measured a node on swatches of 1,000 to 100,000 nodes, and rounded up.
+    fn of_nodes(nodes: f64, solver: LinearSolver) -> Self {
         let linear = |bytes_a_node: f64| (bytes_a_node * nodes) as u64;
-        // Fill of nested dissection on a planar graph grows as n log n.
-        let fill = nodes * nodes.max(2.0).log2();
+        let direct = match solver {
+            LinearSolver::Automatic => UNKNOWNS_A_NODE * nodes <= DIRECT_UNKNOWNS as f64,
+            LinearSolver::Cholesky => true,
+            LinearSolver::ConjugateGradient => false,
+        };
+        let solver = if direct {
+            // Fill on a planar graph grows as n log n.
+            ("factor of the matrix", linear(FACTOR_BYTES * nodes.max(2.0).log2()))
+        } else {
+            ("preconditioner", linear(PRECONDITIONER_BYTES))
+        };
         let memory = vec![
-            ("yarns and nodes", linear(700.0)),
-            ("energies", linear(2600.0)),
-            ("matrix", linear(11.0 * 25.0 * 8.0)),
-            ("factor of the matrix", (FACTOR_BYTES * fill) as u64),
+            ("yarns and nodes", linear(NETWORK_BYTES)),
+            ("energies", linear(ENERGY_BYTES)),
+            ("matrix", linear(MATRIX_BYTES)),
+            solver,
         ];
         Self { nodes: nodes as u64, memory }
     }
@@ -79,21 +101,23 @@ impl Estimate {
 
 /// Speed that the estimate of time assumes: that of two cores.
 const NODE_STEPS_A_SECOND: f64 = 5e4;
-/// Bytes of factor a node and doubling of the nodes.
-const FACTOR_BYTES: f64 = 120.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn estimate(rows: u64, columns: u64) -> Estimate {
+        Estimate::of_chart(rows, columns, LinearSolver::Automatic)
+    }
+
     #[test]
     fn what_does_not_fit_is_refused_by_its_largest_item() {
-        let estimate = Estimate::of_chart(1_000_000, 1_000_000);
-        let failure = estimate.check(Some(8_000_000_000)).unwrap_err();
+        let large = Estimate::of_chart(1_000_000, 1_000_000, LinearSolver::Cholesky);
+        let failure = large.check(Some(8_000_000_000)).unwrap_err();
         assert_eq!(failure.code, Code::ResourceLimit);
         assert!(failure.message.unwrap().contains("factor of the matrix"));
-        assert!(estimate.check(None).is_ok());
-        assert!(Estimate::of_chart(20, 20).check(Some(100_000_000)).is_ok());
-        assert_eq!(Estimate::of_chart(u64::MAX, u64::MAX).total(), u64::MAX);
+        assert!(large.check(None).is_ok());
+        assert!(estimate(20, 20).check(Some(100_000_000)).is_ok());
+        assert_eq!(estimate(u64::MAX, u64::MAX).total(), u64::MAX);
     }
 }

@@ -13,6 +13,7 @@ mod machine;
 mod observe;
 mod opened;
 mod output;
+mod products;
 mod progress;
 mod run_loop;
 mod signals;

@@ -62,7 +62,12 @@ pub fn entry(report: &StepReport) -> Value {
 
 /// Energies of the fabric; the terms that only belong to the stepping are left out.
 fn energies(report: &StepReport) -> impl Iterator<Item = (&'static str, f64)> {
-    report.energies.iter().copied().filter(|(name, _)| *name != "inertia" && !name.ends_with("damping"))
+    report
+        .energies
+        .iter()
+        .filter(|(name, _)| *name != "inertia" && !name.ends_with("damping"))
+        // A sum of nothing is minus zero.
+        .map(|(name, energy)| (*name, energy + 0.0))
 }
 
 fn extent(frame: &Frame) -> [f64; 3] {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use wale::geometry::{Curve, CurveSettings, Solid, curves, solid_at};
 use wale::model::{Frame, Network};
+use wale::pattern::knit;
 use wale::record::{RecordError, RunReader};
 use wale::scene::{ErrorClass, Scene, SceneError, SceneFile};
 use wale::simulation::{Simulation, Start};
@@ -51,26 +52,35 @@ impl OpenedScene {
     /// # Errors
     /// With the estimate and its largest item.
     pub fn check_memory(&self, limit: Option<u64>) -> Result<(), Failure> {
-        let [rows, columns] = self.chart_size();
-        Estimate::of_chart(rows, columns).check(limit.or_else(machine::available_memory))
+        self.estimate().check(limit.or_else(machine::available_memory))
     }
 
-    /// The fabric before it is placed.
+    /// What a run of it will take.
     #[must_use]
-    pub fn network(&self) -> Network {
-        self.start().network
+    pub fn estimate(&self) -> Estimate {
+        let [rows, columns] = self.chart_size();
+        Estimate::of_chart(rows, columns, self.scene.plan.simulation.linear_solver)
+    }
+
+    /// The fabric as its chart lays it out, without compensation: quick, and enough to count.
+    #[must_use]
+    pub fn plain_network(&self) -> Network {
+        plain_network(&self.scene)
     }
 
     /// The fabric before it is placed, and what rest-shape compensation did to it.
     #[must_use]
     pub fn start(&self) -> Start {
-        start(&self.scene)
+        let Scene { chart, working, yarn, fabric, plan, .. } = &self.scene;
+        let mut start = Start::new(chart, *working, yarn, fabric, plan.simulation.rest_shape_compensation);
+        start.network.yarn_color.fill(self.scene.yarn_color);
+        start
     }
 
     /// Sets up the simulation.
     #[must_use]
     pub fn simulation(&self) -> Simulation {
-        Simulation::new(self.network(), &self.scene.yarn, &self.scene.fabric, self.scene.plan.clone())
+        Simulation::new(self.start().network, &self.scene.yarn, &self.scene.fabric, self.scene.plan.clone())
     }
 
     /// Starts as many threads as the command line or else the scene asks for, and says how many there are.
@@ -82,12 +92,11 @@ impl OpenedScene {
     }
 }
 
-/// The fabric of a scene, in its colour.
-fn start(scene: &Scene) -> Start {
-    let compensate = scene.plan.simulation.rest_shape_compensation;
-    let mut start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, compensate);
-    start.network.yarn_color.fill(scene.yarn_color);
-    start
+/// The fabric of a scene as its chart lays it out, in its colour.
+fn plain_network(scene: &Scene) -> Network {
+    let mut network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    network.yarn_color.fill(scene.yarn_color);
+    network
 }
 
 /// An error in a scene, with the code of its class.
@@ -106,7 +115,7 @@ pub struct OpenedRun {
     pub reader: RunReader,
     /// Its scene.
     pub scene: Scene,
-    /// Its fabric.
+    /// Its fabric; arc lengths are those of the first frame, from which sliding counts.
     pub network: Network,
     /// The chosen frames.
     pub frames: Range<u64>,
@@ -124,7 +133,9 @@ impl OpenedRun {
         let frames = choice.among(count).ok_or_else(|| {
             Failure::new(Code::Usage, format_args!("{}: there are {count} frames, from 0 on", folder.display()))
         })?;
-        Ok(Self { network: start(&scene).network, reader, scene, frames })
+        let mut run = Self { network: plain_network(&scene), reader, scene, frames };
+        run.network.arc_length = run.frame(0)?.sliding;
+        Ok(run)
     }
 
     /// A frame, checked to be one of this fabric.

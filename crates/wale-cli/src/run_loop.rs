@@ -4,14 +4,15 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use wale::measure::{Census, Shape};
+use wale::model::{FabricCard, YarnCard};
 use wale::record::{RecordError, RunFolder, Status};
 use wale::simulation::{Simulation, StepReport};
 
 use crate::exit::{Code, Failure};
-use crate::observe;
 use crate::output::{self, span};
 use crate::progress::Progress;
 use crate::signals::Signals;
+use crate::{observe, products};
 
 /// Longest wall time without a checkpoint.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(600);
@@ -22,6 +23,10 @@ pub struct RunLoop {
     pub simulation: Simulation,
     /// Where it is written.
     pub run: RunFolder,
+    /// The yarn.
+    pub yarn: YarnCard,
+    /// The fabric card.
+    pub card: FabricCard,
     /// Flags of the operating system's signals.
     pub signals: Signals,
     /// Whether only errors are told.
@@ -54,6 +59,7 @@ impl RunLoop {
         let (seconds, steps) = progress.spent();
         let summary = self.summary(seconds, steps);
         self.run.write_summary(&summary)?;
+        let made = products::make(self.run.path(), &self.simulation.plan().output)?;
         if !self.quiet {
             output::note(&format!(
                 "{}: done; {} steps and {} frames in {}",
@@ -62,12 +68,18 @@ impl RunLoop {
                 self.run.frame_count(),
                 span(seconds)
             ));
+            for path in made {
+                output::note(&format!("  {}", path.display()));
+            }
         }
         Ok(())
     }
 
     fn steps_with(&mut self, progress: &mut Progress) -> Result<(), Failure> {
         if self.run.frame_count() == 0 {
+            if self.simulation.plan().simulation.relax_first {
+                self.relax();
+            }
             let report = self.simulation.standing();
             self.write_frame(&report)?;
             self.run.checkpoint(self.simulation.state())?;
@@ -116,6 +128,14 @@ impl RunLoop {
         Ok(())
     }
 
+    fn relax(&mut self) {
+        let report = self.simulation.relax();
+        if !self.quiet {
+            let end = if report.converged { "at rest" } else { "not quite at rest" };
+            output::note(&format!("relaxed without friction in {} steps: {end}", report.steps));
+        }
+    }
+
     fn write_frame(&mut self, report: &StepReport) -> Result<(), RecordError> {
         let frame = self.simulation.frame();
         self.run.write_frame(&frame)?;
@@ -124,8 +144,8 @@ impl RunLoop {
 
     fn summary(&mut self, seconds: f64, steps: u64) -> Value {
         let report = self.simulation.standing();
-        let (network, yarn) = (self.simulation.network(), &self.simulation.system().yarn);
-        let census = Census::of(network, yarn);
+        let network = self.simulation.network();
+        let census = Census::of(network, &self.yarn, &self.card);
         let shape = Shape::of(network, &self.simulation.frame());
         let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
         let grips: Vec<Value> = report

@@ -8,9 +8,9 @@ use common::{Workshop, assert_fails, assert_succeeds, code, program, scene, told
 
 #[test]
 fn a_wrong_command_line_is_usage() {
+    assert_eq!(code(&wale(&[])), 2);
     for arguments in [
-        &[][..],
-        &["knit"],
+        &["knit"][..],
         &["run"],
         &["run", "a.toml", "--threads", "0"],
         &["check", "a.toml", "--max-memory", "lots"],

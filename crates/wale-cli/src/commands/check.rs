@@ -5,7 +5,6 @@ use wale::measure::Census;
 use wale::record::{Checkpoints, Frames};
 
 use crate::arguments::Check;
-use crate::estimate::Estimate;
 use crate::exit::Failure;
 use crate::opened::OpenedScene;
 use crate::output::{bytes, grouped, span};
@@ -19,8 +18,8 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     }
     opened.check_memory(arguments.limits.max_memory)?;
     let [rows, columns] = opened.chart_size();
-    let estimate = Estimate::of_chart(rows, columns);
-    let census = Census::of(&opened.network(), &opened.scene.yarn);
+    let estimate = opened.estimate();
+    let census = Census::of(&opened.plain_network(), &opened.scene.yarn, &opened.scene.fabric);
     let plan = &opened.scene.plan.simulation;
     let frames = (plan.duration * plan.frame_rate + 1e-6).floor() as u64 + 1;
     let frame_bytes = Frames::byte_count(census.nodes, census.passes);

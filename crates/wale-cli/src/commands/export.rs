@@ -1,5 +1,7 @@
 //! `wale export`: a run in a format that other programs read.
 
+use std::path::PathBuf;
+
 use wale::export::{self, FrameSnapshots, UpAxis};
 
 use crate::arguments::{Export, Format, Up};
@@ -9,6 +11,17 @@ use crate::say;
 
 /// Exports it.
 pub fn export(arguments: &Export) -> Result<(), Failure> {
+    for path in write_files(arguments)? {
+        say!("{}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Exports it, and says which files were written.
+///
+/// # Errors
+/// When there are no such frames, or a file cannot be read or written.
+pub fn write_files(arguments: &Export) -> Result<Vec<PathBuf>, Failure> {
     let run = OpenedRun::open(&arguments.run, arguments.frames)?;
     let format = match arguments.format {
         Format::Usd => export::Format::Usda,
@@ -35,11 +48,7 @@ pub fn export(arguments: &Export) -> Result<(), Failure> {
         count: usize::try_from(run.frames.end - first).unwrap_or(usize::MAX),
         read: |index: usize| Ok(run.frame(first + index as u64)?),
     };
-    let written = export::write(&path, format, &mut snapshots, &settings).map_err(export_failure)?;
-    for path in written {
-        say!("{}", path.display())?;
-    }
-    Ok(())
+    export::write(&path, format, &mut snapshots, &settings).map_err(export_failure)
 }
 
 fn export_failure(error: export::ExportError) -> Failure {
@@ -51,10 +60,10 @@ fn export_failure(error: export::ExportError) -> Failure {
     }
 }
 
-fn copy_metrics(arguments: &Export, run: &OpenedRun) -> Result<(), Failure> {
+fn copy_metrics(arguments: &Export, run: &OpenedRun) -> Result<Vec<PathBuf>, Failure> {
     let from = run.reader.metrics_path();
     let path = run.results(arguments.out.as_ref(), "metrics.csv")?;
     let text = std::fs::read(&from).map_err(|error| Failure::io(&from, "read", error))?;
     wale::record::atomic_file::write_bytes_atomically(&path, &text)?;
-    say!("{}", path.display())
+    Ok(vec![path])
 }

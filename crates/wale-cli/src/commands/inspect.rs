@@ -14,21 +14,21 @@ use crate::say;
 /// Inspects it.
 pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     let path = &arguments.path;
-    let (network, yarn, frame, run);
+    let (network, scene, frame, run);
     if path.is_dir() {
         let opened = OpenedRun::open(path, FrameChoice::Last)?;
         frame = opened.frame(opened.frames.start)?;
         run = Some(run_facts(&opened.reader, &frame)?);
-        (network, yarn) = (opened.network, opened.scene.yarn);
+        (network, scene) = (opened.network, opened.scene);
     } else {
         let opened = OpenedScene::read(path)?;
         opened.check_memory(None)?;
-        network = opened.network();
+        network = opened.start().network;
         frame = initial(&network);
         run = None;
-        yarn = opened.scene.yarn;
+        scene = opened.scene;
     }
-    let census = Census::of(&network, &yarn);
+    let census = Census::of(&network, &scene.yarn, &scene.fabric);
     let shape = Shape::of(&network, &frame);
     let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
     if arguments.json {

@@ -54,7 +54,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     }
     let (width, height) = (best.wale_spacing, best.course_spacing);
     let density = 1.0 / (width * height);
-    let loop_yarn = tile.yarn_length() / loops as f64;
+    let loop_yarn = tile.yarn_length() / card.path_ratio / loops as f64;
     let areal_mass = loop_yarn * yarn.linear_density * density;
     if arguments.json {
         return output::json(&json!({

@@ -19,6 +19,17 @@ const MARGIN: f64 = 0.085;
 
 /// Draws them.
 pub fn render(arguments: &Render) -> Result<(), Failure> {
+    for path in draw_frames(arguments)? {
+        say!("{}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Draws them, and says which files they are.
+///
+/// # Errors
+/// When there are no such frames, or a file cannot be read or written.
+pub fn draw_frames(arguments: &Render) -> Result<Vec<PathBuf>, Failure> {
     let run = OpenedRun::open(&arguments.run, arguments.frames)?;
     let single = run.frames.end - run.frames.start == 1;
     let paths = paths(arguments, &run, single)?;
@@ -34,7 +45,7 @@ pub fn render(arguments: &Render) -> Result<(), Failure> {
         ground: Some(view.ground_normal()),
         ..Settings::default()
     };
-    for (index, path) in run.frames.clone().zip(paths) {
+    for (index, path) in run.frames.clone().zip(&paths) {
         let frame = run.frame(index)?;
         let curves = run.curves(&frame);
         let scalars = point_scalars(&run.network, &frame, &curves);
@@ -48,15 +59,14 @@ pub fn render(arguments: &Render) -> Result<(), Failure> {
         let solids = run.solids(&frame);
         let subject = Subject { curves: &curves, scalars: Some(&scalars), solids: &solids };
         let image = draw(&subject, &camera, &settings);
-        write_atomically(&path, |out| {
+        write_atomically(path, |out| {
             write_png(&image, out).map_err(|error| match error {
                 PngError::Write(png_error) => io::Error::from(png_error),
                 other => io::Error::other(other),
             })
         })?;
-        say!("{}", path.display())?;
     }
-    Ok(())
+    Ok(paths)
 }
 
 /// One camera for all frames, that has the first and the last in view.

@@ -27,8 +27,13 @@ pub fn resume(arguments: &Resume) -> Result<(), Failure> {
     let signals = Signals::listen().map_err(|error| Failure::io(&arguments.run, "listen to signals", error))?;
     let mut simulation = scene.simulation();
     let columns = observe::columns(&simulation.standing());
-    let state = interrupted.checkpoint.state.clone();
+    if let Some(checkpoint) = &interrupted.checkpoint
+        && !simulation.restore(checkpoint.state.clone())
+    {
+        return Err(RecordError::OtherScene { path: arguments.run.clone() }.into());
+    }
     if !arguments.manner.quiet {
+        let state = simulation.state();
         output::note(&format!(
             "{}: goes on from step {} at {:.4} s on {threads} threads",
             arguments.run.display(),
@@ -36,9 +41,7 @@ pub fn resume(arguments: &Resume) -> Result<(), Failure> {
             state.time
         ));
     }
-    if !simulation.restore(state) {
-        return Err(RecordError::OtherScene { path: arguments.run.clone() }.into());
-    }
     let run = interrupted.resume(&columns)?;
-    RunLoop { simulation, run, signals, quiet: arguments.manner.quiet }.go()
+    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
+    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
 }

@@ -46,14 +46,8 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
             out.display()
         ));
     }
-    if simulation.plan().simulation.relax_first {
-        let report = simulation.relax();
-        if !arguments.manner.quiet {
-            let end = if report.converged { "at rest" } else { "not quite at rest" };
-            output::note(&format!("relaxed without friction in {} steps: {end}", report.steps));
-        }
-    }
-    RunLoop { simulation, run, signals, quiet: arguments.manner.quiet }.go()
+    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
+    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
 }
 
 /// `scenes/swatch.toml` runs into `swatch.run` where the program was called.

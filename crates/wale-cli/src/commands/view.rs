@@ -1,6 +1,7 @@
 //! `wale view`: a run as one HTML page to turn in the hand.
 
 use std::io;
+use std::path::PathBuf;
 
 use wale::geometry::coloring::point_scalars;
 use wale::record::atomic_file::write_atomically;
@@ -13,6 +14,14 @@ use crate::say;
 
 /// Writes it.
 pub fn view(arguments: &View) -> Result<(), Failure> {
+    say!("{}", write_page(arguments)?.display())
+}
+
+/// Writes it, and says which file it is.
+///
+/// # Errors
+/// When there is nothing to show, or a file cannot be read or written.
+pub fn write_page(arguments: &View) -> Result<PathBuf, Failure> {
     let run = OpenedRun::open(&arguments.run, FrameChoice::All)?;
     let path = run.results(arguments.out.as_ref(), "view.html")?;
     let mut frames = Vec::new();
@@ -37,5 +46,5 @@ pub fn view(arguments: &View) -> Result<(), Failure> {
         return Err(Failure::new(Code::BadInput, error));
     }
     written?;
-    say!("{}", path.display())
+    Ok(path)
 }

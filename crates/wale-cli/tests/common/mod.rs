@@ -56,7 +56,7 @@ pub struct Workshop {
 impl Workshop {
     pub fn new() -> Self {
         let workshop = Self { folder: tempfile::tempdir().unwrap() };
-        fs::write(workshop.path("scene.toml"), scene(0.1)).unwrap();
+        fs::write(workshop.path("scene.toml"), scene(0.08)).unwrap();
         workshop
     }
 
@@ -98,7 +98,7 @@ rows = 6
 duration = {duration}
 frame_rate = 100
 largest_step = "2 ms"
-relax_first = false
+relax_first = true
 [[obstacle]]
 sphere = {{ center = [0, 0, 0], radius = "18 mm" }}
 [[grip]]

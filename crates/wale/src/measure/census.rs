@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::model::{Network, NodeId, YarnCard};
+use crate::model::{FabricCard, Network, NodeId, YarnCard};
 
 /// What a network consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -27,7 +27,7 @@ pub struct Census {
     pub passes: usize,
     /// Degrees of freedom: three a node, and one for each pass that slides.
     pub degrees_of_freedom: usize,
-    /// Rest length of all yarns \[m\].
+    /// Length of all real yarn \[m\]: the model's rest length over the card's path ratio.
     pub yarn_length_m: f64,
     /// Mass of all yarns \[kg\].
     pub mass_kg: f64,
@@ -36,7 +36,7 @@ pub struct Census {
 impl Census {
     /// Counts a network.
     #[must_use]
-    pub fn of(network: &Network, yarn: &YarnCard) -> Self {
+    pub fn of(network: &Network, yarn: &YarnCard, card: &FabricCard) -> Self {
         let mut nodes_by_stack_size = Vec::new();
         for node in 0..network.node_count() {
             let size = network.stack(NodeId::new(node)).len();
@@ -46,7 +46,7 @@ impl Census {
             nodes_by_stack_size[size] += 1;
         }
         let sliding = network.pass_slides.iter().filter(|slides| **slides).count();
-        let yarn_length = network.yarn_length();
+        let yarn_length = network.yarn_length() / card.path_ratio;
         Self {
             rows: network.chart_size[0],
             columns: network.chart_size[1],
@@ -75,7 +75,6 @@ impl Census {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::FabricCard;
     use crate::pattern::{Chart, Side, Working, knit};
 
     fn cards() -> (YarnCard, FabricCard) {
@@ -92,7 +91,7 @@ mod tests {
         };
         let fabric = FabricCard {
             loop_length: 16e-3,
-            path_ratio: 1.0,
+            path_ratio: 0.8,
             transition_length: 0.0,
             stitch_length: 2e-3,
             wale_spacing: 4.5e-3,
@@ -118,7 +117,7 @@ mod tests {
         for (chart, knit_share) in [(Chart::stockinette(), 1.0), (Chart::reverse_stockinette(), 0.0)] {
             let chart = chart.repeat(7, 6).unwrap();
             let network = knit::fabric(&chart, Working::Flat { first_row: Side::RightSide }, &fabric);
-            let census = Census::of(&network, &yarn);
+            let census = Census::of(&network, &yarn, &fabric);
             assert_eq!(census.nodes_by_stack_size.iter().sum::<usize>(), census.nodes);
             let stacked: usize = census.nodes_by_stack_size.iter().enumerate().map(|(size, count)| size * count).sum();
             assert_eq!(stacked, census.passes);
@@ -126,7 +125,7 @@ mod tests {
             assert_eq!(census.knit_loops as f64, knit_share * 42.0);
             assert!(census.degrees_of_freedom > 3 * census.nodes && census.degrees_of_freedom < 5 * census.nodes);
             // The loops alone take 42 loop lengths; edges add some.
-            let loops = 42.0 * fabric.loop_length;
+            let loops = 42.0 * fabric.loop_length / fabric.path_ratio;
             assert!(census.yarn_length_m > loops && census.yarn_length_m < 2.0 * loops, "{census:?}");
             assert!((census.mass_kg - census.yarn_length_m * 4e-4).abs() < 1e-15);
         }

@@ -150,6 +150,14 @@ impl Checkpoints {
         })
     }
 
+    /// Whether no checkpoint was ever taken here.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn is_untouched(&self) -> Result<bool, RecordError> {
+        Ok(self.list()?.is_empty() && !self.folder.join(LATEST).exists())
+    }
+
     /// Removes checkpoints of later steps: damaged ones that were passed over.
     ///
     /// # Errors

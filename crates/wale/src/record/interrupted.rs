@@ -22,8 +22,8 @@ use super::{append_file, read_file, read_text};
 /// A run that was found fit to go on with; nothing in its folder has been changed yet.
 #[derive(Debug)]
 pub struct Interrupted {
-    /// The checkpoint to go on from.
-    pub checkpoint: Checkpoint,
+    /// The checkpoint to go on from; `None` if the run was killed before its first, and begins at the beginning.
+    pub checkpoint: Option<Checkpoint>,
     /// The resolved scene's text.
     pub scene: String,
     /// The status that was found; [`Status::Running`] means killed.
@@ -75,8 +75,12 @@ impl Interrupted {
         let scene = read_text(&folder.join(SCENE))?;
         let hash = sha256(scene.as_bytes());
         let frame_count = Frames::new(folder.join(FRAMES)).count()?;
-        let found =
-            Checkpoints::new(folder.join(CHECKPOINTS)).load((!allow_changed).then_some(&hash), |checkpoint| {
+        let checkpoints = Checkpoints::new(folder.join(CHECKPOINTS));
+        let mut checkpoint = None;
+        if checkpoints.is_untouched()? {
+            notes.push("killed before its first checkpoint: begins at the beginning".to_owned());
+        } else {
+            let found = checkpoints.load((!allow_changed).then_some(&hash), |checkpoint| {
                 let marks = checkpoint.marks;
                 if frame_count < marks.frames {
                     return Err(format!("taken at frame {}, and there are {frame_count}", marks.frames));
@@ -85,8 +89,10 @@ impl Interrupted {
                     .and_then(|()| append_file::check_length(&folder.join(LOG), marks.log))
                     .map_err(|error| error.to_string())
             })?;
-        notes.extend(found.passed_over);
-        Ok(Self { checkpoint: found.checkpoint, scene, status, notes, folder: folder.to_path_buf(), lock })
+            notes.extend(found.passed_over);
+            checkpoint = Some(found.checkpoint);
+        }
+        Ok(Self { checkpoint, scene, status, notes, folder: folder.to_path_buf(), lock })
     }
 
     /// The resolved scene's file.
@@ -102,18 +108,26 @@ impl Interrupted {
     /// of the file system.
     pub fn resume(self, columns: &[Column]) -> Result<RunFolder, RecordError> {
         let folder = self.folder;
-        let Checkpoint { state, marks, .. } = self.checkpoint;
         let frames = Frames::new(folder.join(FRAMES));
         let checkpoints = Checkpoints::new(folder.join(CHECKPOINTS));
-        let frame_bytes = match marks.frames {
-            0 => 0,
-            _ => read_file(&frames.path(0))?.len() as u64,
-        };
-        check_space(&folder, frame_bytes, Checkpoints::byte_count(&state))?;
-        let metrics = Metrics::resume(&folder.join(METRICS), columns, marks.metrics)?;
-        let log = StepLog::resume(&folder.join(LOG), marks.log)?;
-        frames.remove_from(marks.frames)?;
-        checkpoints.remove_after(state.step)?;
+        let (metrics_path, log_path) = (folder.join(METRICS), folder.join(LOG));
+        let (metrics, log, frame_count);
+        if let Some(Checkpoint { state, marks, .. }) = self.checkpoint {
+            let frame_bytes = match marks.frames {
+                0 => 0,
+                _ => read_file(&frames.path(0))?.len() as u64,
+            };
+            check_space(&folder, frame_bytes, Checkpoints::byte_count(&state))?;
+            metrics = Metrics::resume(&metrics_path, columns, marks.metrics)?;
+            log = StepLog::resume(&log_path, marks.log)?;
+            checkpoints.remove_after(state.step)?;
+            frame_count = marks.frames;
+        } else {
+            metrics = Metrics::create(&metrics_path, columns)?;
+            log = StepLog::create(&log_path)?;
+            frame_count = 0;
+        }
+        frames.remove_from(frame_count)?;
         for swept in [&folder, &folder.join(FRAMES), &folder.join(CHECKPOINTS)] {
             remove_leftovers(swept)?;
         }
@@ -122,7 +136,7 @@ impl Interrupted {
         Ok(RunFolder {
             scene: sha256(self.scene.as_bytes()),
             frames,
-            frame_count: marks.frames,
+            frame_count,
             metrics,
             log,
             checkpoints,

@@ -27,7 +27,12 @@ pub fn read_status(folder: &Path) -> Result<Status, RecordError> {
     let path = folder.join(STATUS);
     let text = read_text(&path).map_err(|error| match error {
         RecordError::Missing { .. } if folder.exists() => {
-            RecordError::NotARun { path: folder.to_path_buf(), reason: format!("it has no file {STATUS}") }
+            let reason = if folder.join(SCENE).exists() {
+                "killed while it was being made; make it anew with `--force`".to_owned()
+            } else {
+                format!("it has no file {STATUS}")
+            };
+            RecordError::NotARun { path: folder.to_path_buf(), reason }
         }
         RecordError::Missing { .. } => RecordError::Missing { path: folder.to_path_buf() },
         other => other,

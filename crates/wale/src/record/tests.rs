@@ -101,9 +101,13 @@ fn run_to(folder: &Path, last: u64) -> RunFolder {
 
 fn resume_to_the_end(folder: &Path) -> Result<Vec<String>, RecordError> {
     let interrupted = Interrupted::open(folder, &here(), false)?;
-    let mut state = interrupted.checkpoint.state.clone();
+    let saved = interrupted.checkpoint.clone().map(|checkpoint| checkpoint.state);
     let notes = interrupted.notes.clone();
     let mut run = interrupted.resume(&columns())?;
+    let mut state = saved.unwrap_or_else(first_state);
+    if run.frame_count() == 0 {
+        observe(&mut run, &state)?;
+    }
     go_on(&mut run, &mut state, STEPS)?;
     run.set_status(Status::Done)?;
     Ok(notes)
@@ -173,6 +177,25 @@ fn stopped_at_any_step_and_resumed_gives_the_same_bytes() {
         }
         resume_to_the_end(folder.path()).unwrap();
         assert_eq!(files(folder.path()), whole, "stopped at step {stop}");
+    }
+}
+
+#[test]
+fn killed_before_the_first_checkpoint_it_begins_at_the_beginning() {
+    let whole = whole_run();
+    for written in 0..3 {
+        let folder = tempfile::tempdir().unwrap();
+        let mut run = create(folder.path(), false).unwrap();
+        if written > 0 {
+            run.write_frame(&frame(&first_state())).unwrap();
+        }
+        if written > 1 {
+            run.write_metrics(0, &[0.0, 0.0]).unwrap();
+        }
+        drop(run);
+        let notes = resume_to_the_end(folder.path()).unwrap();
+        assert!(notes[0].contains("at the beginning"), "{notes:?}");
+        assert_eq!(files(folder.path()), whole);
     }
 }
 
