@@ -64,7 +64,7 @@ pub enum Linear {
 
 /// Memory of the iterative solver.
 pub struct Iterative {
-    preconditioner: Additive<IncompleteCholesky<f32>, CoarseSpace>,
+    preconditioner: Additive<IncompleteCholesky, CoarseSpace>,
     gradient: ConjugateGradient,
     right_side: Vec<f64>,
     settings: ConjugateGradientSettings,
