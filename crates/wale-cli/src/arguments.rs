@@ -123,6 +123,9 @@ pub struct Run {
     /// Delete the run that the folder holds
     #[arg(long)]
     pub force: bool,
+    /// Simulated time of the run in seconds, in place of the scene's
+    #[arg(long, value_name = "SECONDS", value_parser = parse_duration)]
+    pub duration: Option<f64>,
     #[allow(missing_docs)]
     #[command(flatten)]
     pub manner: Manner,
@@ -348,6 +351,13 @@ fn parse_bed(text: &str) -> Result<f64, String> {
         .ok_or_else(|| format!("`{text}` is not a number of 0 or more"))
 }
 
+fn parse_duration(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|seconds| (0.0..=1e6).contains(seconds))
+        .ok_or_else(|| format!("`{text}` is not a number of seconds, 0 or more"))
+}
+
 fn parse_picture_size(text: &str) -> Result<[u32; 2], String> {
     text.split_once('x')
         .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]))
@@ -377,6 +387,14 @@ mod tests {
         assert_eq!(FrameChoice::Last.among(0), None);
         for bad in ["", "x", "-1", "1..", "18446744073709551615"] {
             assert!(bad.parse::<FrameChoice>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn durations_are_read() {
+        assert_eq!(parse_duration("0.25"), Ok(0.25));
+        for bad in ["", "-1", "NaN", "inf", "1 s", "1e300"] {
+            assert!(parse_duration(bad).is_err(), "{bad}");
         }
     }
 

@@ -7,7 +7,7 @@ use wale::model::LinearSolver;
 use crate::exit::{Code, Failure};
 use crate::output::bytes;
 
-/// Nodes of a loop inside a fabric [Cirio2017].
+/// Nodes of a loop inside a fabric \[Cirio2017\].
 const NODES_A_LOOP: f64 = 4.0;
 /// Coordinates of a node that can move, nearly.
 const UNKNOWNS_A_NODE: f64 = 5.0;

@@ -27,7 +27,7 @@ macro_rules! say {
 /// Writes a value as JSON, in lines.
 ///
 /// # Errors
-/// As [`line`].
+/// As [`line()`].
 pub fn json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Failure::new(Code::Bug, e))?;
     line(format_args!("{text}"))

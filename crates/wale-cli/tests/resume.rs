@@ -201,3 +201,12 @@ fn damage_changes_and_other_versions_are_told() {
     }
     assert_fails(&wale(&["resume", &name]), 3, &["no checkpoint that can be read"]);
 }
+
+#[test]
+fn a_run_can_be_cut_short() {
+    let workshop = Workshop::new();
+    assert_succeeds(&workshop.run("scene.toml", "short.run", &["--duration", "0.01"]));
+    let resolved = fs::read_to_string(workshop.path("short.run").join("scene.resolved.toml")).unwrap();
+    assert!(resolved.contains("duration = 0.01"), "{resolved}");
+    assert!(frame_count(&workshop.path("short.run")) < frame_count(&whole(&workshop)));
+}

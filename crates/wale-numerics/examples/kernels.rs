@@ -14,7 +14,6 @@ use wale_numerics::conjugate_gradient::{ConjugateGradient, ConjugateGradientSett
 use wale_numerics::incomplete_cholesky::{IncompleteCholesky, IncompleteCholeskySettings};
 use wale_numerics::preconditioner::{Additive, BlockJacobi, Preconditioner};
 use wale_numerics::prolongation::Prolongation;
-use wale_numerics::scalar::Scalar;
 use wale_numerics::sparse_cholesky::{BlockOrder, SparseCholesky};
 use wale_numerics::triad::triad_bandwidth;
 use wale_numerics::vector;
@@ -30,18 +29,24 @@ fn shortest(rounds: usize, mut run: impl FnMut()) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
+/// More calls on small matrices, to find a quiet moment on a busy machine.
+fn rounds_of(rows: usize) -> usize {
+    (1_000_000 / rows).clamp(10, 500)
+}
+
 fn report(name: &str, seconds: f64, bytes: usize, triad: f64) {
     let speed = bytes as f64 / seconds;
     println!("{name:<28} {:9.3} ms  {:6.1} GB/s  {:5.2} of triad", seconds * 1e3, speed / 1e9, speed / triad);
 }
 
-fn incomplete<T: Scalar>(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad: f64) {
+fn incomplete(name: &str, matrix: &BlockMatrix, b: &[f64], domains: usize, triad: f64) {
     let settings = IncompleteCholeskySettings { max_domains: domains, ..Default::default() };
-    let mut factor = IncompleteCholesky::<T>::new(Arc::clone(matrix.pattern()), settings);
+    let rounds = rounds_of(matrix.rows());
+    let mut factor = IncompleteCholesky::new(Arc::clone(matrix.pattern()), settings);
     let mut outcome = None;
-    let seconds = shortest(3, || outcome = Some(factor.factor(matrix)));
+    let seconds = shortest(rounds.min(50), || outcome = Some(factor.factor(matrix)));
     let lower = (matrix.pattern().block_count() - matrix.rows()) / 2;
-    let width = std::mem::size_of::<T>() * 28;
+    let width = 4 * 25;
     println!("{name}: {outcome:?}");
     report(
         &format!("{name} factor"),
@@ -50,7 +55,7 @@ fn incomplete<T: Scalar>(name: &str, matrix: &BlockMatrix, b: &[f64], domains: u
         triad,
     );
     let mut x = vec![0.0; b.len()];
-    let seconds = shortest(10, || factor.apply(b, &mut x));
+    let seconds = shortest(rounds, || factor.apply(b, &mut x));
     let bytes = 2 * (lower + matrix.rows()) * width;
     report(&format!("{name} apply"), seconds, bytes, triad);
 }
@@ -59,6 +64,7 @@ fn kernels(wales: usize, courses: usize) {
     let start = Instant::now();
     let Swatch { matrix, coordinates, free } = swatch(wales, courses);
     let rows = matrix.rows();
+    let rounds = rounds_of(rows);
     let pattern = matrix.pattern();
     println!(
         "\n{wales} x {courses} loops: {rows} blocks, {:.2} blocks a row (built in {:.2} s)",
@@ -73,14 +79,14 @@ fn kernels(wales: usize, courses: usize) {
 
     let product_bytes =
         |width| pattern.block_count() * (25 * width + 4) + rows * (2 * SLOTS * width + size_of::<usize>());
-    let seconds = shortest(20, || matrix.multiply(&b, &mut x));
+    let seconds = shortest(rounds, || matrix.multiply(&b, &mut x));
     report("product f64", seconds, product_bytes(8), triad);
     let mut narrow = BlockMatrix::<f32>::zeros(Arc::clone(pattern));
     let seconds = shortest(5, || narrow.copy_from(&matrix));
     report("copy to f32", seconds, pattern.block_count() * 300, triad);
     let b32: Vec<f32> = b.iter().map(|&v| v as f32).collect();
     let mut x32 = b32.clone();
-    let seconds = shortest(20, || narrow.multiply(&b32, &mut x32));
+    let seconds = shortest(rounds, || narrow.multiply(&b32, &mut x32));
     report("product f32", seconds, product_bytes(4), triad);
     let mut sum = 0.0;
     let seconds = shortest(20, || sum = vector::dot(&b, &x));
@@ -89,41 +95,47 @@ fn kernels(wales: usize, courses: usize) {
     report("add_scaled", seconds, 24 * b.len(), triad);
 
     let mut jacobi = BlockJacobi::new(rows);
-    let seconds = shortest(3, || jacobi.factor(&matrix));
+    let seconds = shortest(rounds.min(50), || jacobi.factor(&matrix));
     report("block Jacobi factor", seconds, rows * 300, triad);
     let seconds = shortest(10, || jacobi.add(&b, &mut x));
     report("block Jacobi apply", seconds, rows * 220, triad);
-    incomplete::<f32>("IC(0) f32", &matrix, &b, 32, triad);
-    incomplete::<f32>("IC(0) f32, 2 domains", &matrix, &b, 2, triad);
-    incomplete::<f64>("IC(0) f64", &matrix, &b, 32, triad);
+    incomplete("IC(0)", &matrix, &b, 32, triad);
+    incomplete("IC(0), 2 domains", &matrix, &b, 2, triad);
 
     let start = Instant::now();
     let hats = Prolongation::bilinear(&coordinates, 6.0);
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &free).unwrap();
     println!("coarse: {} unknowns, set up in {:.0} ms", coarse.unknowns(), start.elapsed().as_secs_f64() * 1e3);
-    let seconds = shortest(3, || {
+    let seconds = shortest(rounds.min(50), || {
         coarse.factor(&matrix).unwrap();
     });
     report("coarse factor", seconds, pattern.block_count() * 200, triad);
-    let seconds = shortest(10, || coarse.add(&b, &mut x));
+    let seconds = shortest(rounds, || coarse.add(&b, &mut x));
     report("coarse apply", seconds, rows * 100, triad);
 
-    let mut local = IncompleteCholesky::<f32>::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
+    let mut local = IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
     local.factor(&matrix).unwrap();
     let mut gradient = ConjugateGradient::new(b.len());
     for tolerance in [1e-1, 1e-2] {
         let settings =
             ConjugateGradientSettings { relative_tolerance: tolerance, max_iterations: 200, absolute_tolerance: 0.0 };
-        let mut iterations = 0;
-        let seconds = shortest(2, || {
-            x.fill(0.0);
-            let mut both = Additive(&mut local, &mut coarse);
-            iterations = gradient.solve(&matrix, &mut both, &b, &mut x, None, &settings).iterations;
-        });
-        println!(
-            "PCG to {tolerance:.0e}: {iterations} iterations, {:.1} ms each",
-            seconds * 1e3 / (iterations + 1) as f64
-        );
+        let mut solve = |name: &str, preconditioner: &mut dyn Preconditioner| {
+            let mut iterations = 0;
+            let seconds = shortest(2, || {
+                x.fill(0.0);
+                let report = gradient.solve(&matrix, preconditioner, &b, &mut x, None, &settings);
+                iterations = report.iterations;
+            });
+            println!(
+                "PCG to {tolerance:.0e}, {name}: {iterations} iterations, {:.2} ms each",
+                seconds * 1e3 / (iterations + 1) as f64
+            );
+        };
+        solve("IC(0)", &mut local);
+        solve("IC(0) + coarse", &mut Additive(&mut local, &mut coarse));
+        if rows < 60_000 {
+            solve("Jacobi + coarse", &mut Additive(&mut jacobi, &mut coarse));
+        }
     }
 
     if rows <= 25_000 {

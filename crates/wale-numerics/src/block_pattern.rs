@@ -51,21 +51,25 @@ impl BlockPattern {
     }
 
     /// Number of block rows (and columns).
+    #[inline]
     pub fn rows(&self) -> usize {
         self.diagonal.len()
     }
 
     /// Number of stored blocks.
+    #[inline]
     pub fn block_count(&self) -> usize {
         self.columns.len()
     }
 
     /// Place of the first block of each row, one more entry than rows.
+    #[inline]
     pub fn row_start(&self) -> &[usize] {
         &self.row_start
     }
 
     /// Columns of all blocks, row after row.
+    #[inline]
     pub fn columns(&self) -> &[u32] {
         &self.columns
     }

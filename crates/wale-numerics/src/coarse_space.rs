@@ -205,13 +205,11 @@ impl Piece {
                 continue;
             }
             self.row.collect(matrix, row, prolongation, free);
-            let mask = axis_mask(free[row]);
             let (corners, weights) = prolongation.weights_of(row);
             for (&corner, &weight) in corners.iter().zip(weights) {
                 if weight == 0.0 {
                     continue;
                 }
-                let factor = mask.map(|m| m * weight);
                 let start = coarse_pattern.row_start()[corner as usize];
                 let columns = coarse_pattern.row(corner as usize);
                 for (node, sum) in self.row.nodes.iter().zip(&self.row.sums) {
@@ -220,10 +218,8 @@ impl Piece {
                         continue;
                     };
                     let block = &mut self.blocks[start + found - base];
-                    for r in 0..AXES {
-                        for c in 0..AXES {
-                            block[r * AXES + c] += factor[r] * sum[r * AXES + c];
-                        }
+                    for k in 0..AXES * AXES {
+                        block[k] += weight * sum[k];
                     }
                 }
             }
@@ -253,6 +249,7 @@ impl RowSums {
         self.sums.clear();
         let pattern = matrix.pattern();
         let start = pattern.row_start()[row];
+        let rows_free = axis_mask(free[row]);
         // Neighbours mostly lie in the same coarse cell.
         let mut last = None;
         let mut places = [0; 4];
@@ -266,14 +263,15 @@ impl RowSums {
                 last = Some(corners);
             }
             let block = &matrix.blocks()[start + k];
-            let mask = axis_mask(free[column]);
+            let columns_free = axis_mask(free[column]);
+            let entries: [f64; AXES * AXES] = std::array::from_fn(|k| {
+                let (r, c) = (k / AXES, k % AXES);
+                block[r * SLOTS + c] * rows_free[r] * columns_free[c]
+            });
             for (&place, &weight) in places.iter().zip(weights) {
                 let sum = &mut self.sums[place];
-                let factor = mask.map(|m| m * weight);
-                for r in 0..AXES {
-                    for c in 0..AXES {
-                        sum[r * AXES + c] += factor[c] * block[r * SLOTS + c];
-                    }
+                for k in 0..AXES * AXES {
+                    sum[k] += weight * entries[k];
                 }
             }
         }

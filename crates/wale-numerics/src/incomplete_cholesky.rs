@@ -1,27 +1,24 @@
 //! Incomplete Cholesky factors without fill, by blocks, cut in domains that work in parallel.
 //!
-//! The matrix is approximated by `(D + L) D⁻¹ (D + L)ᵀ`, `L` with the pattern of the strictly
-//! lower blocks and `D` block diagonal; on a pattern without fill this is exact. Rows keep their
-//! natural order, which follows the yarn along the courses. Couplings between domains are dropped
-//! in the factor: nearly free for the loose solves inside Newton. The number of domains follows
-//! from the size of the matrix alone, so results are the same on any thread count.
+//! The matrix is approximated by `(I + M) D (I + M)ᵀ`, `M` with the pattern of the strictly lower
+//! blocks and `D` block diagonal; on a pattern without fill this is exact. It is computed in 64
+//! bits, because stiff and soft directions differ by more than 32 bits can tell apart after
+//! elimination, and kept in 32, because the sweeps are bound by memory. Rows keep their natural
+//! order, which follows the yarn along the courses. Couplings between domains are dropped in the
+//! factor: nearly free for the loose solves inside Newton. The number of domains follows from the
+//! size of the matrix alone, so results are the same on any thread count.
 
-use crate::block_matrix::{BLOCK, BlockMatrix, SLOTS};
+use crate::block_matrix::{BLOCK, BlockMatrix, SLOTS, row_times_vector};
 use crate::block_pattern::BlockPattern;
 use crate::preconditioner::Preconditioner;
-use crate::scalar::Scalar;
-use crate::small_block::inverse_of_positive;
+use crate::small_block::{inverse_of_positive, product, subtract_product, transposed};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
 
-/// Lanes of one column: a column is read as a full vector register, the rest is ignored.
+/// Numbers of a block of a vector, padded to a full register.
 const LANES: usize = 8;
-/// Numbers of a block, column-major, with room to read a full register from its last column.
-const STRIDE: usize = 28;
-
-type Block<T> = [T; STRIDE];
-type Lanes<T> = [T; LANES];
 
 /// How to cut and how to go on when a pivot fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,37 +63,56 @@ pub struct IncompleteCholeskyReport {
     pub domains: usize,
 }
 
-/// The factor, in numbers of 32 bits unless said otherwise.
+/// The factor.
 #[derive(Clone, Debug)]
-pub struct IncompleteCholesky<T = f32> {
+pub struct IncompleteCholesky {
     pattern: Arc<BlockPattern>,
     settings: IncompleteCholeskySettings,
     rows_per_domain: usize,
-    domains: Vec<Domain<T>>,
+    domains: Vec<Domain>,
 }
 
-/// Some consecutive rows and the couplings among them.
+/// Some consecutive rows and the couplings among them; rows and columns count from its first.
 #[derive(Clone, Debug)]
-struct Domain<T> {
+struct Domain {
     first_row: usize,
-    /// Per row, where its strictly lower blocks begin.
-    row_start: Vec<u32>,
-    /// Column of each lower block, counted from the first row of the domain.
-    column: Vec<u32>,
-    /// Place of each lower block in the matrix.
+    /// `M`.
+    lower: Half,
+    /// `Mᵀ`: kept too, so that both sweeps gather along rows.
+    upper: Half,
+    inverse_diagonal: Vec<[f32; BLOCK]>,
+    /// Place in the matrix of each lower block.
     source: Vec<u32>,
-    lower: Vec<Block<T>>,
-    inverse_diagonal: Vec<Block<T>>,
-    /// `L D⁻¹` of the row being factored.
-    scaled: Vec<Block<T>>,
-    /// Solution of the forward sweep.
-    forward: Vec<Lanes<T>>,
-    /// `Lᵀ x` as far as it is known in the backward sweep.
-    pulled: Vec<Lanes<T>>,
+    /// Place in `upper` of the mirror image of each lower block.
+    mirror: Vec<u32>,
+    recent: Recent,
+    /// What is left of the row being factored: its lower blocks, then its diagonal one.
+    row: Vec<[f64; BLOCK]>,
+    /// Solution of the forward sweep, then of both.
+    solution: Vec<[f32; LANES]>,
     outcome: Result<f64, usize>,
 }
 
-impl<T: Scalar> IncompleteCholesky<T> {
+/// The blocks on one side of the diagonal, by rows.
+#[derive(Clone, Debug)]
+struct Half {
+    row_start: Vec<u32>,
+    column: Vec<u32>,
+    blocks: Vec<[f32; BLOCK]>,
+}
+
+/// The rows in 64 bits that later ones may still need, in two rings.
+#[derive(Clone, Debug)]
+struct Recent {
+    /// `(D Mᵀ)` at `place & upper_mask`, places being those of the upper half.
+    upper: Vec<[f64; BLOCK]>,
+    upper_mask: usize,
+    /// `D⁻¹` at `row & diagonal_mask`.
+    diagonal: Vec<[f64; BLOCK]>,
+    diagonal_mask: usize,
+}
+
+impl IncompleteCholesky {
     /// Takes the memory for matrices over `pattern`.
     pub fn new(pattern: Arc<BlockPattern>, settings: IncompleteCholeskySettings) -> Self {
         let rows = pattern.rows();
@@ -155,7 +171,7 @@ impl<T: Scalar> IncompleteCholesky<T> {
     }
 }
 
-impl<T: Scalar> Preconditioner for IncompleteCholesky<T> {
+impl Preconditioner for IncompleteCholesky {
     fn add(&mut self, residual: &[f64], out: &mut [f64]) {
         self.solve::<true>(residual, out);
     }
@@ -164,102 +180,153 @@ impl<T: Scalar> Preconditioner for IncompleteCholesky<T> {
     }
 }
 
-impl<T: Scalar> Domain<T> {
+impl Half {
+    fn new() -> Self {
+        Self { row_start: vec![0], column: Vec::new(), blocks: Vec::new() }
+    }
+
+    #[inline(always)]
+    fn row(&self, row: usize) -> Range<usize> {
+        self.row_start[row] as usize..self.row_start[row + 1] as usize
+    }
+
+    /// The sum of blocks times vectors over one row.
+    #[inline(always)]
+    fn row_times(&self, row: usize, x: &[[f32; LANES]]) -> [f32; SLOTS] {
+        let range = self.row(row);
+        row_times_vector(&self.blocks[range.clone()], &self.column[range], x)
+    }
+}
+
+impl Recent {
+    fn new(lower: &Half, upper: &Half) -> Self {
+        let rows = lower.row_start.len() - 1;
+        let (mut most_rows, mut most_places) = (0, 0);
+        let mut first_needed = rows;
+        for row in (0..rows).rev() {
+            let lowest = lower.column[lower.row(row)].first();
+            first_needed = first_needed.min(lowest.map_or(row, |&c| c as usize));
+            most_rows = most_rows.max(row + 1 - first_needed);
+            let places = upper.row_start[row + 1] - upper.row_start[first_needed];
+            most_places = most_places.max(places as usize);
+        }
+        let (rows, places) = (most_rows.max(1).next_power_of_two(), most_places.max(1).next_power_of_two());
+        Self {
+            upper: vec![[0.0; BLOCK]; places],
+            upper_mask: places - 1,
+            diagonal: vec![[0.0; BLOCK]; rows],
+            diagonal_mask: rows - 1,
+        }
+    }
+}
+
+impl Domain {
     fn new(pattern: &BlockPattern, first_row: usize, end_row: usize) -> Self {
         let rows = end_row - first_row;
-        let mut row_start = vec![0];
-        let (mut column, mut source) = (Vec::new(), Vec::new());
-        let mut longest = 0;
+        let (mut lower, mut upper) = (Half::new(), Half::new());
+        let mut source = Vec::new();
         for row in first_row..end_row {
-            for position in pattern.row_start()[row]..pattern.diagonal_position(row) {
-                let other = pattern.columns()[position] as usize;
-                if other >= first_row {
-                    column.push((other - first_row) as u32);
+            for position in pattern.row_start()[row]..pattern.row_start()[row + 1] {
+                let column = pattern.columns()[position] as usize;
+                if (first_row..row).contains(&column) {
+                    lower.column.push((column - first_row) as u32);
                     source.push(position as u32);
+                } else if (row + 1..end_row).contains(&column) {
+                    upper.column.push((column - first_row) as u32);
                 }
             }
-            longest = longest.max(column.len() - row_start[row - first_row] as usize);
-            row_start.push(column.len() as u32);
+            lower.row_start.push(lower.column.len() as u32);
+            upper.row_start.push(upper.column.len() as u32);
         }
+        // Rows ascend, so the mirror images in one upper row are met in its own order.
+        let mut next = upper.row_start.clone();
+        let mirror_of = |&column: &u32| {
+            let place = &mut next[column as usize];
+            *place += 1;
+            *place - 1
+        };
+        let mirror = lower.column.iter().map(mirror_of).collect();
+        for half in [&mut lower, &mut upper] {
+            half.blocks = vec![[0.0; BLOCK]; half.column.len()];
+        }
+        let longest = (0..rows).map(|row| lower.row(row).len()).max();
         Self {
             first_row,
-            lower: vec![[T::ZERO; STRIDE]; column.len()],
-            inverse_diagonal: vec![[T::ZERO; STRIDE]; rows],
-            scaled: vec![[T::ZERO; STRIDE]; longest],
-            forward: vec![[T::ZERO; LANES]; rows],
-            pulled: vec![[T::ZERO; LANES]; rows],
-            row_start,
-            column,
             source,
+            mirror,
+            recent: Recent::new(&lower, &upper),
+            inverse_diagonal: vec![[0.0; BLOCK]; rows],
+            row: vec![[0.0; BLOCK]; longest.unwrap_or(0) + 1],
+            solution: vec![[0.0; LANES]; rows],
+            lower,
+            upper,
             outcome: Err(first_row),
         }
     }
 
     fn factor(&mut self, matrix: &BlockMatrix, settings: &IncompleteCholeskySettings) {
         for &shift in &settings.shifts {
-            self.outcome = self.factor_shifted(matrix, 1.0 + shift, settings.smallest_pivot).map(|()| shift);
+            self.outcome = self.factor_shifted(matrix, shift, settings.smallest_pivot).map(|()| shift);
             if self.outcome.is_ok() {
                 return;
             }
         }
     }
 
-    fn factor_shifted(&mut self, matrix: &BlockMatrix, diagonal_factor: f64, smallest_pivot: f64) -> Result<(), usize> {
-        let blocks = matrix.blocks();
+    fn factor_shifted(&mut self, matrix: &BlockMatrix, shift: f64, smallest_pivot: f64) -> Result<(), usize> {
         for row in 0..self.inverse_diagonal.len() {
-            let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
-            for place in range.clone() {
-                let mut sums = [[T::ZERO; LANES]; SLOTS];
-                let other = self.column[place] as usize;
-                self.common_products(range.start..place, other, &mut sums);
-                let block = &blocks[self.source[place] as usize];
-                let entry = &mut self.lower[place];
-                for c in 0..SLOTS {
-                    for r in 0..SLOTS {
-                        entry[c * SLOTS + r] = T::from_f64(block[r * SLOTS + c]) - sums[c][r];
-                    }
-                }
-                let mut scaled = [[T::ZERO; LANES]; SLOTS];
-                add_product(&mut scaled, entry, &self.inverse_diagonal[other]);
-                store(&scaled, &mut self.scaled[place - range.start]);
-            }
-            let mut sums = [[T::ZERO; LANES]; SLOTS];
-            for (scaled, lower) in self.scaled.iter().zip(&self.lower[range]) {
-                add_product(&mut sums, scaled, lower);
-            }
             let global = self.first_row + row;
-            let block = &blocks[matrix.pattern().diagonal_position(global)];
-            let remains: [f64; BLOCK] = std::array::from_fn(|k| {
-                let (r, c) = (k / SLOTS, k % SLOTS);
-                let shifted = if r == c { diagonal_factor } else { 1.0 };
-                block[k] * shifted - sums[c][r].to_f64()
-            });
-            let kept = (0..SLOTS).all(|s| remains[s * (SLOTS + 1)] > smallest_pivot * block[s * (SLOTS + 1)]);
-            let inverse = if kept { inverse_of_positive(&remains, smallest_pivot) } else { None };
-            let inverse = inverse.ok_or(global)?;
-            for (entry, value) in self.inverse_diagonal[row].iter_mut().zip(inverse) {
-                *entry = T::from_f64(value);
+            let diagonal = &matrix.blocks()[matrix.pattern().diagonal_position(global)];
+            let range = self.lower.row(row);
+            for (to, &source) in self.row.iter_mut().zip(&self.source[range.clone()]) {
+                *to = matrix.blocks()[source as usize];
             }
+            self.row[range.len()] = *diagonal;
+            self.eliminate(row);
+            let remains = &mut self.row[range.len()];
+            let mut kept = true;
+            for entry in (0..BLOCK).step_by(SLOTS + 1) {
+                remains[entry] += shift * diagonal[entry];
+                kept &= remains[entry] > smallest_pivot * diagonal[entry];
+            }
+            let inverse = if kept { inverse_of_positive(remains, smallest_pivot) } else { None };
+            let inverse = inverse.ok_or(global)?;
+            self.recent.diagonal[row & self.recent.diagonal_mask] = inverse;
+            self.inverse_diagonal[row] = inverse.map(|v| v as f32);
         }
         Ok(())
     }
 
-    /// Adds `Σ (L D⁻¹)ᵢⱼ Lₖⱼᵀ` over the columns that the present row `i`, up to the place being
-    /// computed, has in common with row `k`.
-    #[inline]
-    fn common_products(&self, present: std::ops::Range<usize>, k: usize, sums: &mut [Lanes<T>; SLOTS]) {
-        let other_end = self.row_start[k + 1] as usize;
-        let (mut mine, mut other) = (present.start, self.row_start[k] as usize);
-        while mine < present.end && other < other_end {
-            match self.column[mine].cmp(&self.column[other]) {
-                std::cmp::Ordering::Less => mine += 1,
-                std::cmp::Ordering::Greater => other += 1,
-                std::cmp::Ordering::Equal => {
-                    add_product(sums, &self.scaled[mine - present.start], &self.lower[other]);
-                    mine += 1;
-                    other += 1;
+    /// Subtracts from a row what the rows above it eliminate, one after the other.
+    fn eliminate(&mut self, row: usize) {
+        let range = self.lower.row(row);
+        let columns = &self.lower.column[range.clone()];
+        let mask = self.recent.upper_mask;
+        for (k, &column) in columns.iter().enumerate() {
+            let column = column as usize;
+            let (done, rest) = self.row.split_at_mut(k + 1);
+            let remains = &done[k];
+            let mirror = self.mirror[range.start + k] as usize;
+            let inverse = &self.recent.diagonal[column & self.recent.diagonal_mask];
+            let factor = product(remains, inverse);
+            let image = transposed(remains);
+            self.recent.upper[mirror & mask] = image;
+            self.lower.blocks[range.start + k] = factor.map(|v| v as f32);
+            self.upper.blocks[mirror] = transposed(&factor).map(|v| v as f32);
+            // The columns after this one that the row above has too; last of all the mirror
+            // image itself, which meets the diagonal.
+            let later = &columns[k + 1..];
+            let mut next = 0;
+            for place in self.upper.row(column).start..mirror {
+                let other = self.upper.column[place];
+                while next < later.len() && later[next] < other {
+                    next += 1;
+                }
+                if next < later.len() && later[next] == other {
+                    subtract_product(&mut rest[next], &factor, &self.recent.upper[place & mask]);
                 }
             }
+            subtract_product(&mut rest[later.len()], &factor, &image);
         }
     }
 
@@ -267,90 +334,22 @@ impl<T: Scalar> Domain<T> {
         let rows = self.inverse_diagonal.len();
         let residual = &residual.as_chunks::<SLOTS>().0[..rows];
         for row in 0..rows {
-            let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
-            let mut sums = [[T::ZERO; LANES]; SLOTS];
-            for (block, &column) in self.lower[range.clone()].iter().zip(&self.column[range]) {
-                add_columns(&mut sums, block, &self.forward[column as usize]);
-            }
-            let mut rest = [T::ZERO; LANES];
+            let known = self.lower.row_times(row, &self.solution);
             for r in 0..SLOTS {
-                rest[r] = T::from_f64(residual[row][r]) - total(&sums, r);
+                self.solution[row][r] = residual[row][r] as f32 - known[r];
             }
-            self.forward[row] = times(&self.inverse_diagonal[row], &rest);
-            self.pulled[row] = [T::ZERO; LANES];
         }
         let out = &mut out.as_chunks_mut::<SLOTS>().0[..rows];
         for row in (0..rows).rev() {
-            let correction = times(&self.inverse_diagonal[row], &self.pulled[row]);
-            let mut x = [T::ZERO; LANES];
+            let forward = [self.solution[row]];
+            let scaled = row_times_vector(&[self.inverse_diagonal[row]], &[0], &forward);
+            let known = self.upper.row_times(row, &self.solution);
             for r in 0..SLOTS {
-                x[r] = self.forward[row][r] - correction[r];
-                let value = x[r].to_f64();
+                let x = scaled[r] - known[r];
+                self.solution[row][r] = x;
+                let value = f64::from(x);
                 out[row][r] = if ADD { out[row][r] + value } else { value };
             }
-            let range = self.row_start[row] as usize..self.row_start[row + 1] as usize;
-            for (block, &column) in self.lower[range.clone()].iter().zip(&self.column[range]) {
-                let pulled = &mut self.pulled[column as usize];
-                for c in 0..SLOTS {
-                    let mut sum = pulled[c];
-                    for r in 0..SLOTS {
-                        sum = block[c * SLOTS + r].fused(x[r], sum);
-                    }
-                    pulled[c] = sum;
-                }
-            }
-        }
-    }
-}
-
-/// Column `c` of a block and what follows it in memory.
-#[inline(always)]
-fn column_of<T: Scalar>(block: &Block<T>, c: usize) -> Lanes<T> {
-    std::array::from_fn(|lane| block[c * SLOTS + lane])
-}
-
-/// `sums += a bᵀ`, column by column.
-#[inline(always)]
-fn add_product<T: Scalar>(sums: &mut [Lanes<T>; SLOTS], a: &Block<T>, b: &Block<T>) {
-    for c in 0..SLOTS {
-        let column = column_of(a, c);
-        for r in 0..SLOTS {
-            for lane in 0..LANES {
-                sums[r][lane] = column[lane].fused(b[c * SLOTS + r], sums[r][lane]);
-            }
-        }
-    }
-}
-
-/// Adds to sum `c` column `c` of the block times `x[c]`: five independent chains.
-#[inline(always)]
-fn add_columns<T: Scalar>(sums: &mut [Lanes<T>; SLOTS], block: &Block<T>, x: &Lanes<T>) {
-    for c in 0..SLOTS {
-        let column = column_of(block, c);
-        for lane in 0..LANES {
-            sums[c][lane] = column[lane].fused(x[c], sums[c][lane]);
-        }
-    }
-}
-
-#[inline(always)]
-fn total<T: Scalar>(sums: &[Lanes<T>; SLOTS], lane: usize) -> T {
-    (sums[0][lane] + sums[1][lane]) + (sums[2][lane] + sums[3][lane]) + sums[4][lane]
-}
-
-/// Block times vector; the lanes beyond the slots hold nothing of meaning.
-#[inline(always)]
-fn times<T: Scalar>(block: &Block<T>, x: &Lanes<T>) -> Lanes<T> {
-    let mut sums = [[T::ZERO; LANES]; SLOTS];
-    add_columns(&mut sums, block, x);
-    std::array::from_fn(|lane| total(&sums, lane))
-}
-
-#[inline(always)]
-fn store<T: Scalar>(sums: &[Lanes<T>; SLOTS], block: &mut Block<T>) {
-    for c in 0..SLOTS {
-        for r in 0..SLOTS {
-            block[c * SLOTS + r] = sums[c][r];
         }
     }
 }

@@ -22,7 +22,7 @@ fn warm_calls_allocate_nothing() {
         b
     };
     let mut jacobi = BlockJacobi::new(matrix.rows());
-    let mut incomplete = IncompleteCholesky::<f32>::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
+    let mut incomplete = IncompleteCholesky::new(Arc::clone(pattern), IncompleteCholeskySettings::default());
     let hats = Prolongation::bilinear(&coordinates, 6.0);
     let mut coarse = CoarseSpace::new(Arc::clone(pattern), hats, &free).unwrap();
     let small = swatch(10, 20);

@@ -15,7 +15,7 @@ use crate::opened::OpenedRun;
 use crate::say;
 
 /// Free space around the fabric, as a share of the picture's height.
-const MARGIN: f64 = 0.06;
+const MARGIN: f64 = 0.085;
 
 /// Draws them.
 pub fn render(arguments: &Render) -> Result<(), Failure> {

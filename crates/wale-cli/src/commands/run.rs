@@ -13,7 +13,10 @@ use crate::{observe, output};
 
 /// Runs it.
 pub fn run(arguments: &Run) -> Result<(), Failure> {
-    let scene = OpenedScene::read(&arguments.scene)?;
+    let mut scene = OpenedScene::read(&arguments.scene)?;
+    if let Some(duration) = arguments.duration {
+        scene.scene.plan.simulation.duration = duration;
+    }
     scene.check_memory(arguments.limits.max_memory)?;
     let threads = scene.use_threads(arguments.manner.threads)?;
     let signals = Signals::listen().map_err(|error| Failure::io(&arguments.scene, "listen to signals", error))?;

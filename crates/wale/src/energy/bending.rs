@@ -162,10 +162,8 @@ impl Element<12> for Bending {
         let (a, b, c) = (k * second, -k * first / rest, 2.0 * k * f / (rest * rest));
         let (a, b, c) = clamp2(a, b, c);
         let mut g = [0.0; 12];
-        for i in 0..3 {
-            g[i] = angle.gradient[0][i];
-            g[4 + i] = angle.gradient[1][i];
-            g[8 + i] = angle.gradient[2][i];
+        for (slots, by_node) in g.chunks_exact_mut(4).zip(&angle.gradient) {
+            slots[..3].copy_from_slice(by_node);
         }
         local.add_square(a, &g);
         for i in 0..12 {
@@ -179,23 +177,18 @@ impl Element<12> for Bending {
         local.hessian[3][11] -= c;
         local.hessian[11][3] -= c;
 
-        // Turning out of the plane of the bend: a second-order change of θ, positive in one of two combinations.
-        let (opposite, together) = if first >= 0.0 {
-            (0.5 * k * angle.first_over_tangent(first), 0.0)
-        } else {
-            (0.0, -0.5 * k * first * (0.5 * angle.theta).tan())
-        };
+        // What turns the bend out of its plane, or tilts a segment while it changes length, changes θ to second order
+        // with either sign; the size of that curvature steers well on both sides of the rest angle.
+        let size = k * first.abs();
+        let straight = if first >= 0.0 { angle.first_over_tangent(first) } else { -first / (0.5 * angle.theta).tan() };
+        let (opposite, together) = (0.5 * k * straight, 0.5 * size * (0.5 * angle.theta).tan());
         for (factor, sign) in [(opposite, -1.0), (together, 1.0)] {
-            if factor > 0.0 {
-                let (l1, l2) = (1.0 / angle.length[0], sign / angle.length[1]);
-                let mut g = [0.0; 12];
-                for i in 0..3 {
-                    g[i] = -l1 * angle.binormal[i];
-                    g[4 + i] = (l1 - l2) * angle.binormal[i];
-                    g[8 + i] = l2 * angle.binormal[i];
-                }
-                local.add_square(factor, &g);
-            }
+            let (l1, l2) = (1.0 / angle.length[0], sign / angle.length[1]);
+            local.add_square(factor, &spread(angle.binormal, [-l1, l1 - l2, l2]));
+        }
+        for (segment, weights) in [(0, [-1.0, 1.0, 0.0]), (1, [0.0, -1.0, 1.0])] {
+            let l = angle.length[segment];
+            local.add_square(size / (l * l), &spread(angle.in_plane[segment], weights));
         }
         local
     }
@@ -233,6 +226,17 @@ impl Element<12> for Bending {
     }
 }
 
+/// One direction at all three nodes, with weights.
+fn spread(direction: [f64; 3], weights: [f64; 3]) -> [f64; 12] {
+    let mut g = [0.0; 12];
+    for i in 0..3 {
+        for node in 0..3 {
+            g[4 * node + i] = weights[node] * direction[i];
+        }
+    }
+    g
+}
+
 /// The turning angle of two segments and what its derivatives are made of.
 struct Angle {
     theta: f64,
@@ -240,6 +244,8 @@ struct Angle {
     gradient: [[f64; 3]; 3],
     /// Unit vector normal to both segments (any, where they are parallel).
     binormal: [f64; 3],
+    /// Unit vectors in the plane of the bend, normal to each segment.
+    in_plane: [[f64; 3]; 2],
     length: [f64; 2],
 }
 
@@ -261,12 +267,12 @@ impl Angle {
             let binormal = scale(b, 1.0 / dot(b, b).sqrt());
             let m = cross(binormal, t1);
             let gradient = Self::gradients(m, m, length);
-            return Self { theta, gradient, binormal, length };
+            return Self { theta, gradient, binormal, in_plane: [m, m], length };
         }
         let binormal = scale(normal, 1.0 / sine);
         // In-plane unit vectors: turning t₂ along m₂, or t₁ against m₁, increases θ.
         let (m1, m2) = (cross(binormal, t1), cross(binormal, t2));
-        Self { theta, gradient: Self::gradients(m1, m2, length), binormal, length }
+        Self { theta, gradient: Self::gradients(m1, m2, length), binormal, in_plane: [m1, m2], length }
     }
 
     fn gradients(m1: [f64; 3], m2: [f64; 3], length: [f64; 2]) -> [[f64; 3]; 3] {

@@ -50,11 +50,7 @@ impl Element<12> for Wrapping {
     }
 
     fn convex(&self, q: &[f64; 12]) -> Local<12> {
-        let hinge = Hinge::new(q);
-        let (energy, gradient, weight) = self.value(&hinge);
-        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
-        local.add_square(self.stiffness * weight, &hinge.gradient);
-        local
+        self.blended(q, 1.0)
     }
 
     fn blended(&self, q: &[f64; 12], convexity: f64) -> Local<12> {
@@ -62,9 +58,12 @@ impl Element<12> for Wrapping {
         let (energy, gradient, weight) = self.value(&hinge);
         let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
         local.add_square(self.stiffness * weight, &hinge.gradient);
+        let psi = self.sign * hinge.angle - self.rest_angle;
+        let slope = self.stiffness * weight * (psi - whole_turns(psi)) * self.sign;
+        if convexity > 0.0 {
+            add_curvature_size(q, convexity * slope.abs(), &mut local);
+        }
         if convexity < 1.0 {
-            let psi = self.sign * hinge.angle - self.rest_angle;
-            let slope = self.stiffness * weight * (psi - whole_turns(psi)) * self.sign;
             add_angle_curvature(q, (1.0 - convexity) * slope, &mut local.hessian);
         }
         local
@@ -103,6 +102,35 @@ pub fn wrapping_angle<T: Real>(q: &[T; 12]) -> T {
     let vb = cross(back, sub(x3, x1));
     let e = scale(axis, T::constant(1.0) / dot(axis, axis).sqrt());
     dot(e, cross(va, vb)).atan2(dot(va, vb))
+}
+
+/// Adds the size of the angle's curvature: across the axis at a distance `ρ` a side turns `ψ` by `1/ρ²` a square of
+/// its motion, with either sign, so that `factor/ρ²` in both directions across bounds it.
+fn add_curvature_size(q: &[f64; 12], factor: f64, local: &mut Local<12>) {
+    let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
+    let axis = sub(x1, x0);
+    let length = dot(axis, axis).sqrt();
+    let e = scale(axis, 1.0 / length);
+    for (side, node) in [(sub(x4, x0), 3), (sub(x3, x0), 2)] {
+        let along = dot(side, e);
+        let across = sub(side, scale(e, along));
+        let distance2 = dot(across, across);
+        // Where a side aligns with the axis its weight has faded.
+        if distance2 < 1e-6 * dot(side, side) {
+            continue;
+        }
+        let radial = scale(across, 1.0 / distance2.sqrt());
+        let s = along / length;
+        for direction in [radial, cross(e, radial)] {
+            let mut g = [0.0; 12];
+            for k in 0..3 {
+                g[k] = -(1.0 - s) * direction[k];
+                g[3 + k] = -s * direction[k];
+                g[3 * node + k] = direction[k];
+            }
+            local.add_square(factor / distance2, &g);
+        }
+    }
 }
 
 /// Adds `factor` times the Hessian of the wrapping angle by `x₀ x₁ x₃ x₄`.

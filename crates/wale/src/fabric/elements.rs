@@ -63,6 +63,9 @@ impl Linearisation {
     pub const CONVEX: Self = Self::Blended(1.0);
 }
 
+/// What is done with each element: its stencil, gradient, and Hessian by row and column.
+pub type Visit<'a> = dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64) + 'a;
+
 /// Elements of some kind, as a solver that visits them one by one sees them.
 pub trait ElementSet {
     /// Name of the kind.
@@ -70,12 +73,7 @@ pub trait ElementSet {
     /// Sum of the energies \[J\].
     fn total(&self, q: &[f64]) -> f64;
     /// Calls `visit(stencil, gradient, Hessian rows)` for every element, in order, and returns the energy \[J\].
-    fn visit(
-        &self,
-        q: &[f64],
-        linearisation: Linearisation,
-        visit: &mut dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64),
-    ) -> f64;
+    fn visit(&self, q: &[f64], linearisation: Linearisation, visit: &mut Visit<'_>) -> f64;
     /// Calls `visit(stencil, gradient)` for every element and returns the energy \[J\].
     fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64;
 }
@@ -87,12 +85,7 @@ impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
     fn total(&self, q: &[f64]) -> f64 {
         self.energy(q)
     }
-    fn visit(
-        &self,
-        q: &[f64],
-        linearisation: Linearisation,
-        visit: &mut dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64),
-    ) -> f64 {
+    fn visit(&self, q: &[f64], linearisation: Linearisation, visit: &mut Visit<'_>) -> f64 {
         let mut energy = 0.0;
         for (index, element) in self.elements.iter().enumerate() {
             let q = self.local(index, q);

@@ -87,7 +87,7 @@ mod tests {
             color: [9, 9, 9],
         };
         let colors = vec![vec![Vec3::ONE; 50]];
-        let (found, found_colors) = hairs(&[curve.clone()], &colors, 2.0);
+        let (found, found_colors) = hairs(std::slice::from_ref(&curve), &colors, 2.0);
         assert_eq!(found.len(), 98);
         assert_eq!(found.len(), found_colors.len());
         let away = |p: DVec3| p.reject_from(DVec3::X).length() / curve.radius;

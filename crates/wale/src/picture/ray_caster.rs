@@ -7,26 +7,19 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::{
-    Camera, ColorMode, Image, Settings, Subject,
+    Camera, Image, Settings, Subject,
     bvh::Ray,
-    color_map::{ColorMap, to_linear, to_srgb},
+    color_map::{to_linear, to_srgb},
     hair::hairs,
-    scale_bar::{Legend, draw_caption, draw_legend, draw_scale_bar},
+    light::{KEY, Light, before_shoulder, shoulder},
+    sampling::{Dice, plastic, tent},
+    scale_bar::{draw_caption, draw_legend, draw_scale_bar},
     solid::{PlacedSolid, SolidHit},
     spun_yarn::{Spin, surface},
     tube::{TubeHit, Tubes},
+    yarn_colors::point_colors,
 };
-use crate::geometry::Quantity;
 
-/// Strength of the key light on a surface that faces it.
-const KEY: f32 = 1.02;
-/// Colour of the key light: a little warm.
-const KEY_COLOR: Vec3 = Vec3::new(1.0, 0.965, 0.91);
-/// Light from above and from below, where nothing stands near.
-const SKY: Vec3 = Vec3::new(0.56, 0.60, 0.67);
-const BOUNCE: Vec3 = Vec3::new(0.40, 0.37, 0.34);
-/// Light from the eye.
-const FILL: f32 = 0.10;
 /// Half the angle that the key light spans, as a tangent.
 const KEY_SPREAD: f32 = 0.07;
 /// How far things dim the light from all around, in yarn radii.
@@ -61,60 +54,6 @@ pub fn render(subject: &Subject, camera: &Camera, settings: &Settings) -> Image 
     image
 }
 
-/// Values at both ends of the colours for a quantity: all but the most extreme hundredth, about zero if signed.
-#[must_use]
-pub fn color_range(quantity: Quantity, values: &[Vec<f64>]) -> [f64; 2] {
-    let mut sorted: Vec<f64> = values.iter().flatten().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let at = |part: f64| {
-        let last = sorted.len().saturating_sub(1) as f64;
-        sorted.get((part * last).round() as usize).copied().unwrap_or(0.0)
-    };
-    let (low, high) = (at(0.01), at(0.99));
-    let smallest = 1e-3 / quantity.legend_unit().1;
-    if quantity.is_signed() {
-        let reach = low.abs().max(high.abs()).max(smallest);
-        [-reach, reach]
-    } else {
-        [0.0, high.max(smallest)]
-    }
-}
-
-/// The colour map that suits a quantity.
-#[must_use]
-pub fn color_map(quantity: Quantity) -> ColorMap {
-    if quantity.is_signed() { ColorMap::Diverging } else { ColorMap::Sequential }
-}
-
-fn point_colors(subject: &Subject, settings: &Settings) -> (Vec<Vec<Vec3>>, Option<Legend>) {
-    let scalars = match (settings.color_mode, subject.scalars) {
-        (ColorMode::By(quantity), Some(scalars)) => Some((quantity, scalars.of(quantity))),
-        _ => None,
-    };
-    let Some((quantity, values)) = scalars else {
-        let plain = |c: &crate::geometry::Curve| vec![to_linear(c.color); c.points.len()];
-        return (subject.curves.iter().map(plain).collect(), None);
-    };
-    let range = settings.color_range.unwrap_or_else(|| color_range(quantity, values));
-    let map = color_map(quantity);
-    let colors = subject
-        .curves
-        .iter()
-        .enumerate()
-        .map(|(c, curve)| {
-            (0..curve.points.len())
-                .map(|i| {
-                    let value = values.get(c).and_then(|v| v.get(i)).copied().unwrap_or(f64::NAN);
-                    map.light((value - range[0]) / (range[1] - range[0]))
-                })
-                .collect()
-        })
-        .collect();
-    let (unit, scale) = quantity.legend_unit();
-    let legend = Legend { title: format!("{} [{unit}]", quantity.name()), range: range.map(|v| v * scale), map };
-    (colors, Some(legend))
-}
-
 /// Everything the rays need, in single precision about the camera's target.
 struct Stage<'a> {
     camera: &'a Camera,
@@ -128,8 +67,7 @@ struct Stage<'a> {
     background: Vec3,
     /// The background as samples bring it.
     plain: Vec3,
-    to_key: Vec3,
-    up: Vec3,
+    light: Light,
     reach: f32,
 }
 
@@ -154,13 +92,12 @@ impl<'a> Stage<'a> {
             low.is_finite().then_some((normal.as_vec3(), (low - 1.02 * radius) as f32))
         });
         let key = -0.62 * camera.right + 0.62 * camera.up + 0.60 * camera.back;
-        // The light that the shoulder bends to the colour that was asked for.
-        let background = to_linear(settings.background)
-            .map(|y| if y <= 0.8 { y } else { 0.8 - 0.2 * (1.0 - (y.min(0.9999) - 0.8) / 0.2).ln() });
-        // Hair finer than a fortieth of a pixel is not worth its rays.
+        let background = before_shoulder(to_linear(settings.background));
+        // Hair is seen close up only; it thins out with distance, and far away it is not worth its rays.
         let pixels = radius / camera.height * settings.height as f64;
-        let hair = if settings.hair > 0.0 && pixels > 2.0 {
-            let (curves, colors) = hairs(subject.curves, colors, settings.hair);
+        let density = settings.hair * ((pixels - 4.0) / 6.0).clamp(0.0, 1.0);
+        let hair = if density > 0.0 {
+            let (curves, colors) = hairs(subject.curves, colors, density);
             Tubes::new(&curves, &colors, camera.target)
         } else {
             Tubes::default()
@@ -174,8 +111,7 @@ impl<'a> Stage<'a> {
             ground,
             background,
             plain: shoulder(background),
-            to_key: key.normalize().as_vec3(),
-            up: camera.up.as_vec3(),
+            light: Light { to_key: key.normalize().as_vec3(), up: camera.up.as_vec3() },
             reach: AMBIENT_REACH * (if radius > 0.0 { radius } else { 0.01 * camera.height }) as f32,
         }
     }
@@ -246,7 +182,7 @@ impl<'a> Stage<'a> {
             Seen::Solid(hit) => {
                 let at = ray.origin + hit.distance * ray.direction;
                 let (key, open) = self.arriving(at, hit.normal, dice);
-                let light = self.lit(hit.color, hit.normal, -ray.direction, key, open);
+                let light = self.light.surface(hit.color, [hit.normal; 2], -ray.direction, key, open);
                 // An endless plane runs out into the background instead of ending at a horizon.
                 let far = at.length() / self.camera.height as f32;
                 let fade = if hit.endless { ((far - 1.2) / 2.5).clamp(0.0, 1.0) } else { 0.0 };
@@ -256,7 +192,7 @@ impl<'a> Stage<'a> {
                 let at = ray.origin + distance * ray.direction;
                 let normal = self.ground.map_or(Vec3::Z, |(n, _)| n);
                 let (key, open) = self.arriving(at, normal, dice);
-                let direct = KEY * self.to_key.dot(normal).max(0.0);
+                let direct = KEY * self.light.to_key.dot(normal).max(0.0);
                 let around = 0.5;
                 if key == 1.0 && open == 1.0 {
                     return self.background;
@@ -271,12 +207,12 @@ impl<'a> Stage<'a> {
     fn arriving(&self, at: Vec3, normal: Vec3, dice: Dice) -> (f32, f32) {
         let start = at + 1e-2 / AMBIENT_REACH * self.reach * normal;
         let [a, b] = dice.pair(0, dice.sample);
-        let side = self.to_key.any_orthonormal_vector();
-        let other = self.to_key.cross(side);
+        let side = self.light.to_key.any_orthonormal_vector();
+        let other = self.light.to_key.cross(side);
         let (sin, cos) = (std::f32::consts::TAU * a).sin_cos();
         let spread = KEY_SPREAD * b.sqrt();
-        let direction = (self.to_key + spread * (cos * side + sin * other)).normalize();
-        let faces = normal.dot(self.to_key) > -0.3;
+        let direction = (self.light.to_key + spread * (cos * side + sin * other)).normalize();
+        let faces = normal.dot(self.light.to_key) > -0.3;
         let ray = Ray { origin: start, direction };
         let key = if faces && !self.blocked(ray, f32::INFINITY) { 1.0 } else { 0.0 };
         let count = self.settings.ambient_rays;
@@ -299,29 +235,15 @@ impl<'a> Stage<'a> {
         (key, open / count as f32)
     }
 
-    /// Light that a rough, slightly hairy surface sends to the eye.
-    fn lit(&self, color: Vec3, normal: Vec3, to_eye: Vec3, key: f32, open: f32) -> Vec3 {
-        let wrap = 0.18;
-        let facing = ((normal.dot(self.to_key) + wrap) / (1.0 + wrap)).max(0.0);
-        let above = 0.5 + 0.5 * normal.dot(self.up);
-        // Light that is stopped nearby comes back in the stopper's colour, which is most often this one.
-        let around = Vec3::splat(open) / (Vec3::ONE - color.min(Vec3::splat(0.9)) * (1.0 - open));
-        let ambient = BOUNCE.lerp(SKY, above) * around;
-        let eye = normal.dot(to_eye).max(0.0);
-        let rim = (1.0 - eye).powi(3) * (0.25 * ambient + 0.22 * key * facing);
-        let hair = color.lerp(Vec3::ONE, 0.35);
-        color * (KEY * KEY_COLOR * facing * key + ambient + FILL * eye) + hair * rim
-    }
-
     fn hair_light(&self, ray: Ray, hit: TubeHit, dice: Dice) -> Vec3 {
         let capsule = self.hair.capsules[hit.capsule as usize];
         let at = ray.origin + hit.distance * ray.direction;
         let axis = (capsule.b - capsule.a).normalize_or(Vec3::X);
         // A hair is lit all around: what counts is how squarely it lies to the light.
-        let normal = (self.to_key - self.to_key.dot(axis) * axis).normalize_or(-ray.direction);
+        let normal = (self.light.to_key - self.light.to_key.dot(axis) * axis).normalize_or(-ray.direction);
         let (key, open) = self.arriving(at, normal, dice);
         let color = self.hair.points[capsule.first as usize].color;
-        self.lit(color.lerp(Vec3::ONE, 0.06), normal, -ray.direction, 0.55 * key, 0.85 * open)
+        self.light.surface(color.lerp(Vec3::ONE, 0.06), [normal; 2], -ray.direction, 0.55 * key, 0.85 * open)
     }
 
     fn yarn_light(&self, ray: Ray, hit: TubeHit, dice: Dice) -> Vec3 {
@@ -353,55 +275,17 @@ impl<'a> Stage<'a> {
         let (key, open) = self.arriving(at, smooth, dice);
         let groove = 1.0 - 0.5 * (1.0 - spun.crest) * (1.0 - spun.crest);
         let color = a.color.lerp(b.color, s) * (1.0 + 0.30 * spun.streak);
-        self.lit(color.min(Vec3::splat(0.95)), normal, -ray.direction, key * groove.sqrt(), open * groove) * groove
+        let normals = [normal, smooth];
+        self.light.surface(color.min(Vec3::splat(0.95)), normals, -ray.direction, key * groove.sqrt(), open * groove)
+            * groove
     }
-}
-
-/// Numbers from 0 to 1 of one sample of one pixel.
-#[derive(Clone, Copy)]
-struct Dice {
-    x: u32,
-    y: u32,
-    sample: u32,
-}
-
-impl Dice {
-    /// Pair `n` of the given purpose: well spread over the pairs of a pixel, and so unlike between neighbouring pixels
-    /// that what is left of the grain is too fine to see.
-    fn pair(self, purpose: u32, n: u32) -> [f32; 2] {
-        let (x, y) = ((self.x + 61 * purpose) as f32, (self.y + 83 * purpose) as f32);
-        // Interleaved gradient noise [Jimenez 2014], and a lattice by the plastic number.
-        let first = (52.982_918 * (0.067_110_56 * x + 0.005_837_15 * y).fract()).fract();
-        let second = (0.754_877_7 * x).fract() + (0.569_840_3 * y).fract();
-        plastic(n, [first, second.fract()])
-    }
-}
-
-/// Point `n` of the sequence with the steps of the plastic number \[Roberts 2018\]: even for any count.
-fn plastic(n: u32, start: [f32; 2]) -> [f32; 2] {
-    let n = n as f32;
-    [(start[0] + 0.754_877_7 * n).fract(), (start[1] + 0.569_840_3 * n).fract()]
-}
-
-/// From 0..1 to a tent over −0.8..0.8.
-fn tent(u: f32) -> f32 {
-    let v = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-    0.8 * v
-}
-
-/// Leaves light below 0.8 as it is and bends what is above towards 1.
-fn shoulder(light: Vec3) -> Vec3 {
-    let one = |x: f32| {
-        if x <= 0.8 { x } else { 0.8 + 0.2 * (1.0 - (-(x - 0.8) / 0.2).exp()) }
-    };
-    Vec3::new(one(light.x), one(light.y), one(light.z))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
-        geometry::{Curve, PointScalars, Solid, SolidShape},
+        geometry::{Curve, Solid, SolidShape},
         picture::{Projection, View},
     };
 
@@ -457,32 +341,6 @@ mod tests {
             pool.install(|| picture(&small()))
         };
         assert!(on(1) == on(4));
-    }
-
-    #[test]
-    fn colours_follow_the_numbers() {
-        let (curves, _) = subject();
-        let rising = |c: &Curve| c.points.iter().map(|p| p.x * 1e3).collect::<Vec<f64>>();
-        let scalars = PointScalars { curvature: curves.iter().map(rising).collect(), ..PointScalars::default() };
-        let subject = Subject { curves: &curves, scalars: Some(&scalars), solids: &[] };
-        let settings = Settings { color_mode: ColorMode::By(Quantity::Curvature), ..small() };
-        let (colors, legend) = point_colors(&subject, &settings);
-        let brightness = |v: Vec3| v.x + v.y + v.z;
-        assert!(brightness(colors[0][20]) > 5.0 * brightness(colors[0][0]));
-        let legend = legend.unwrap();
-        assert_eq!(legend.title, "curvature [1/mm]");
-        assert!((legend.range[1] - 0.02).abs() < 1e-3, "{legend:?}");
-        // Without numbers the yarn keeps its own colour.
-        let (colors, legend) = point_colors(&Subject { scalars: None, ..subject }, &settings);
-        assert!(legend.is_none() && colors[0][0].x > colors[0][0].z);
-    }
-
-    #[test]
-    fn ranges_are_even_about_zero_where_sign_matters() {
-        let values = vec![vec![-0.02, 0.0, 0.05, f64::NAN]];
-        assert_eq!(color_range(Quantity::Stretch, &values), [-0.05, 0.05]);
-        assert_eq!(color_range(Quantity::Curvature, &[vec![200.0, 3.0]]), [0.0, 200.0]);
-        assert!(color_range(Quantity::Sliding, &[])[1] > 0.0);
     }
 
     #[test]

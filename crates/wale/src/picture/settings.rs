@@ -97,9 +97,9 @@ impl Default for Settings {
             color_range: None,
             plies: 3,
             twist: 150.0,
-            hair: 3.0,
+            hair: 2.5,
             ground: Some(DVec3::Z),
-            ambient_rays: 1,
+            ambient_rays: 2,
             scale_bar: true,
             caption: None,
         }

@@ -356,7 +356,7 @@ fn changed_inputs_are_refused_unless_allowed_and_gone_ones_told() {
     let scene = folder.path().join("scene.toml");
     fs::write(&scene, "as it was").unwrap();
     let path = folder.path().join("run");
-    let mut run = create_from(&path, &[scene.clone()], false).unwrap();
+    let mut run = create_from(&path, std::slice::from_ref(&scene), false).unwrap();
     observe(&mut run, &first_state()).unwrap();
     drop(run);
     let open = |allow_changed| Interrupted::open(&path, &here(), allow_changed);

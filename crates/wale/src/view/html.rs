@@ -41,6 +41,7 @@ pub fn write_html(data: &ViewData, settings: &ViewSettings, mut target: impl Wri
         ("compose.frag", include_str!("compose.frag.glsl")),
         ("unpack.js", include_str!("unpack.js")),
         ("meshes.js", include_str!("meshes.js")),
+        ("painter.js", include_str!("painter.js")),
         ("viewer.js", include_str!("viewer.js")),
     ];
     let mut rest = PAGE;

@@ -28,12 +28,13 @@ float lampAt(vec3 place, vec3 normal, float lift) {
   return sum / 9.0;
 }
 
-vec3 lit(vec3 color, vec3 normal, vec3 toEye, float key, float open) {
+// `form` is the normal of the coarse form: the edge that hair brightens is the form's.
+vec3 lit(vec3 color, vec3 normal, vec3 form, vec3 toEye, float key, float open) {
   float facing = max((dot(normal, uKey) + 0.18) / 1.18, 0.0);
   float above = 0.5 + 0.5 * normal.y;
   vec3 around = vec3(open) / (1.0 - min(color, 0.9) * (1.0 - open));
-  vec3 ambient = mix(vec3(0.40, 0.37, 0.34), vec3(0.56, 0.60, 0.67), above) * around;
+  vec3 ambient = mix(vec3(0.43, 0.40, 0.37), vec3(0.56, 0.60, 0.67), above) * around;
   float eye = max(dot(normal, toEye), 0.0);
-  vec3 rim = pow(1.0 - eye, 3.0) * (0.25 * ambient + 0.22 * key * facing);
-  return color * (1.02 * vec3(1.0, 0.965, 0.91) * facing * key + ambient + 0.10 * eye) + mix(color, vec3(1.0), 0.35) * rim;
+  vec3 rim = pow(1.0 - max(dot(form, toEye), 0.0), 3.0) * (0.25 * ambient + 0.22 * key * facing);
+  return color * (0.97 * vec3(1.0, 0.965, 0.91) * facing * key + ambient + 0.17 * eye) + mix(color, vec3(1.0), 0.35) * rim;
 }

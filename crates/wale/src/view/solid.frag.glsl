@@ -13,7 +13,7 @@ void main() {
   vec3 normal = normalize(vNormal);
   vec3 toEye = normalize(-vPlace);
   if (dot(normal, toEye) < 0.0) normal = -normal;
-  vec3 light = lit(uColor, normal, toEye, lampAt(vPlace, normal, uLift), 1.0);
+  vec3 light = lit(uColor, normal, normal, toEye, lampAt(vPlace, normal, uLift), 1.0);
   float fade = uEndless > 0.0 ? smoothstep(0.45, 1.0, length(vOwn) / uEndless) : 0.0;
   color = vec4(mix(toSrgb(shoulder(light)), uBackground, fade), 1.0);
 }

@@ -62,7 +62,7 @@ float hash(vec3 p) {
 // Smooth noise drawn out along the yarn.
 float fibres(float around, float count, float along, float ply) {
   float x = fract(around) * count;
-  float y = 0.22 * along;
+  float y = 0.30 * along;
   vec2 cell = floor(vec2(x, y));
   vec2 f = smoothstep(0.0, 1.0, vec2(x, y) - cell);
   float right = mod(cell.x + 1.0, count);
@@ -106,17 +106,17 @@ void main() {
     float reach = sqrt(max(ply * ply - across * across, 0.0));
     float inPly = atan(across, reach);
     crest = 1.0 - detail * (1.0 - reach / ply);
-    streak = detail * fibres(inPly / (2.0 * PI) - 0.55 * uSlope / (2.0 * PI) * along, 11.0, along, mod(sector, uPlies));
-    tilt = detail * clamp(0.9 * inPly, -1.15, 1.15) + 0.2 * streak;
+    streak = detail * fibres(inPly / (2.0 * PI) - 0.55 * uSlope / (2.0 * PI) * along, 24.0, along, mod(sector, uPlies));
+    tilt = detail * clamp(0.9 * inPly, -1.15, 1.15) + 0.4 * streak;
   } else {
-    streak = detail * fibres(around / (2.0 * PI), 14.0, along, 0.0);
-    tilt = 0.25 * streak;
+    streak = detail * fibres(around / (2.0 * PI), 36.0, along, 0.0);
+    tilt = 0.4 * streak;
   }
   vec3 sideways = cross(tangent, smoothNormal);
   vec3 normal = normalize(cos(tilt) * smoothNormal + sin(tilt) * sideways - uSlope * sin(tilt) * tangent);
   float groove = 1.0 - 0.55 * (1.0 - crest) * (1.0 - crest);
   vec3 base = uByValue ? toLinear(texture(uMap, vec2(mix(vValue.x, vValue.y, s) * 255.0 / 256.0 + 0.5 / 256.0, 0.5)).rgb) : vYarn.rgb;
-  base = min(base * (1.0 + 0.16 * streak), 0.95);
+  base = min(base * (1.0 + 0.26 * streak), 0.95);
   float key = lampAt(at, smoothNormal, 0.35 * radius) * sqrt(groove);
-  color = vec4(toSrgb(shoulder(lit(base, normal, -ray, key, groove) * groove)), 1.0);
+  color = vec4(toSrgb(shoulder(lit(base, normal, smoothNormal, -ray, key, groove) * groove)), 1.0);
 }
