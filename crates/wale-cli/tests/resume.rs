@@ -86,6 +86,27 @@ fn killed_at_any_moment_and_resumed_gives_the_same_bits() {
     assert!(killed >= 2, "only {killed} runs were still going when they were killed");
 }
 
+/// What the relaxation before the first frame leaves is in the checkpoint, all of it.
+#[test]
+fn a_run_that_relaxes_first_is_resumed_to_the_same_bits() {
+    let workshop = Workshop::new();
+    let relaxing = scene(0.03).replace("relax_first = false", "relax_first = true");
+    fs::write(workshop.path("scene.toml"), relaxing).unwrap();
+    assert_succeeds(&workshop.run("scene.toml", "whole.run", &["-j", "1"]));
+    for frames in [0, 1] {
+        let name = format!("{frames}.run");
+        let run = workshop.path(&name);
+        let (scene, out) = (workshop.text("scene.toml"), workshop.text(&name));
+        let mut child = workshop.start(&["run", &scene, "--out", &out]);
+        wait_for("the run", || !status(&run).is_empty() && frame_count(&run) >= frames);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert_eq!(status(&run), "running");
+        assert_succeeds(&wale(&["resume", &out]));
+        assert_same_bits(&workshop.path("whole.run"), &run);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn signals_stop_after_a_checkpoint_and_tell_how_to_go_on() {

@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use serde::Serialize;
+use wale::model::LinearSolver;
 use wale::pattern::knit;
 use wale::scene::Scene;
 use wale::simulation::Simulation;
@@ -44,8 +45,9 @@ pub struct Measured {
 ///
 /// # Errors
 /// When a step fails.
-pub fn measure(nodes: u32, seconds: f64) -> Result<Measured, Failure> {
+pub fn measure(nodes: u32, seconds: f64, solver: LinearSolver) -> Result<Measured, Failure> {
     let mut scene = scene(nodes)?;
+    scene.plan.simulation.linear_solver = solver;
     scene.plan.simulation.largest_step = STEP;
     let began = Instant::now();
     let mut simulation = simulation(&scene);

@@ -1,8 +1,9 @@
 //! `wale bench`: speed and memory on this machine, beside its memory bandwidth.
 
 use serde_json::json;
+use wale::model::LinearSolver;
 
-use crate::arguments::Bench;
+use crate::arguments::{Bench, Subject};
 use crate::bench::swatch::{Measured, measure};
 use crate::bench::triad;
 use crate::exit::Failure;
@@ -14,17 +15,23 @@ const PARTS: [u32; 3] = [10, 3, 1];
 /// Wall time that a size is measured for \[s\].
 const SECONDS: f64 = 5.0;
 
+/// Sizes around which conjugate gradients take over from factors \[nodes\].
+const SOLVER_NODES: [u32; 4] = [1000, 2000, 4000, 8000];
+
 /// Measures.
 pub fn bench(arguments: &Bench) -> Result<(), Failure> {
     let threads = machine::use_threads(arguments.manner.threads.map(usize::from))?;
+    match arguments.subject {
+        Subject::Swatch => swatch(arguments, threads),
+        Subject::Solver => solver(arguments, threads),
+    }
+}
+
+fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     let before = triad();
     let mut measured: Vec<Measured> = Vec::new();
     for part in PARTS {
-        let nodes = arguments.nodes / part;
-        if !arguments.manner.quiet {
-            note(&format!("garter swatch of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
-        }
-        measured.push(measure(nodes, SECONDS)?);
+        measured.push(told(arguments, arguments.nodes / part, LinearSolver::Automatic)?);
     }
     let bandwidth = before.max(triad());
     let exponent = exponent(&measured);
@@ -52,6 +59,38 @@ pub fn bench(arguments: &Bench) -> Result<(), Failure> {
         )?;
     }
     say!("the cost of a step grows as n^{exponent:.2}")
+}
+
+fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
+    let mut measured = Vec::new();
+    for nodes in SOLVER_NODES {
+        let direct = told(arguments, nodes, LinearSolver::Cholesky)?;
+        measured.push([direct, told(arguments, nodes, LinearSolver::ConjugateGradient)?]);
+    }
+    if arguments.json {
+        let sizes: Vec<_> = measured.iter().map(|[a, b]| json!({"cholesky": a, "conjugate_gradient": b})).collect();
+        return output::json(&json!({ "threads": threads, "sizes": sizes }));
+    }
+    say!("a step of 1 ms on {threads} threads:")?;
+    say!("    nodes   sparse Cholesky   conjugate gradients   iterations a solve")?;
+    for [direct, iterative] in &measured {
+        say!(
+            "{:>9} {:>14.1} ms {:>18.1} ms {:>20.1}",
+            grouped(direct.nodes as u64),
+            1e3 * direct.step_s,
+            1e3 * iterative.step_s,
+            iterative.linear_iterations / iterative.newton_iterations
+        )?;
+    }
+    Ok(())
+}
+
+/// Measures a size, and says so.
+fn told(arguments: &Bench, nodes: u32, solver: LinearSolver) -> Result<Measured, Failure> {
+    if !arguments.manner.quiet {
+        note(&format!("garter swatch of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
+    }
+    measure(nodes, SECONDS, solver)
 }
 
 /// Slope of the logarithm of the cost over that of the size, from the smallest to the largest.

@@ -98,7 +98,7 @@ rows = 6
 duration = {duration}
 frame_rate = 100
 largest_step = "2 ms"
-relax_first = true
+relax_first = false
 [[obstacle]]
 sphere = {{ center = [0, 0, 0], radius = "18 mm" }}
 [[grip]]
