@@ -25,7 +25,10 @@ fn json(arguments: &[&str]) -> serde_json::Value {
 fn a_run_makes_what_its_scene_asks_for() {
     let workshop = Workshop::new();
     let asked = scene(0.02)
-        .replace("pictures = \"none\"", "pictures = \"last\"\nexports = [\"usd\", \"vtk\", \"bcc\", \"obj\", \"ply\", \"csv\"]")
+        .replace(
+            "pictures = \"none\"",
+            "pictures = \"last\"\nexports = [\"usd\", \"vtk\", \"bcc\", \"obj\", \"ply\", \"csv\"]",
+        )
         .replace("view = false", "view = true");
     fs::write(workshop.path("scene.toml"), asked).unwrap();
     assert_succeeds(&workshop.run("scene.toml", "a.run", &[]));
@@ -83,7 +86,8 @@ fn reports_are_json() {
     let relaxed = json(&["relax", &scene, "--json"]);
     assert!((1e-3..1e-2).contains(&relaxed["wale_spacing_m"].as_f64().unwrap()), "{relaxed}");
     let facts = json(&["inspect", &scene, "--json"]);
-    let stacks: u64 = facts["fabric"]["nodes_by_stack_size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
+    let stacks: u64 =
+        facts["fabric"]["nodes_by_stack_size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
     assert_eq!(stacks, facts["fabric"]["nodes"].as_u64().unwrap());
     assert_eq!(json(&["schema"])["title"], "wale scene");
     assert_eq!(json(&["version", "--json"])["version"], env!("CARGO_PKG_VERSION"));
