@@ -28,6 +28,7 @@ impl<const N: usize> Local<N> {
     }
 
     /// Adds `factor · a aᵀ`.
+    #[inline]
     pub fn add_square(&mut self, factor: f64, a: &[f64; N]) {
         for i in 0..N {
             let scaled = factor * a[i];

@@ -14,30 +14,36 @@ pub trait Real:
     fn chain(self, value: f64, first: f64, second: f64) -> Self;
 
     /// Square root; its derivatives are undefined at zero.
+    #[inline]
     fn sqrt(self) -> Self {
         let root = self.value().sqrt();
         self.chain(root, 0.5 / root, -0.25 / (root * self.value()))
     }
     /// Natural logarithm.
+    #[inline]
     fn ln(self) -> Self {
         let x = self.value();
         self.chain(x.ln(), 1.0 / x, -1.0 / (x * x))
     }
     /// Arc cosine, for arguments inside `(−1, 1)`.
+    #[inline]
     fn acos(self) -> Self {
         let x = self.value();
         let s = (1.0 - x * x).sqrt();
         self.chain(x.acos(), -1.0 / s, -x / (s * s * s))
     }
     /// `self²`.
+    #[inline]
     fn square(self) -> Self {
         self * self
     }
     /// Multiplied by a constant.
+    #[inline]
     fn scale(self, factor: f64) -> Self {
         self * Self::constant(factor)
     }
     /// Increased by a constant.
+    #[inline]
     fn offset(self, constant: f64) -> Self {
         self + Self::constant(constant)
     }
@@ -46,15 +52,19 @@ pub trait Real:
 }
 
 impl Real for f64 {
+    #[inline]
     fn constant(value: f64) -> Self {
         value
     }
+    #[inline]
     fn value(self) -> f64 {
         self
     }
+    #[inline]
     fn chain(self, value: f64, _first: f64, _second: f64) -> Self {
         value
     }
+    #[inline]
     fn atan2(self, x: Self) -> Self {
         f64::atan2(self, x)
     }
