@@ -1,24 +1,20 @@
-//! What always holds of a knitted network (`docs/topics/knit-structure.md`).
+//! Invariants of knitted networks, whatever the chart and however it is worked.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use wale::dynamics::system::System;
-use wale::fabric::{Mechanics, TileCoordinates};
-use wale::model::{FabricCard, LoopProportions, Network, NodeId, PassKind, SegmentKind, YarnCard, YarnId};
+use wale::model::{FabricCard, LoopProportions, Network, NodeId, YarnCard, YarnId};
 use wale::pattern::{Chart, Side, Working, knit};
-
-const WORKINGS: [Working; 3] =
-    [Working::Flat { first_row: Side::RightSide }, Working::Flat { first_row: Side::WrongSide }, Working::Round];
 
 fn cards() -> (YarnCard, FabricCard) {
     let yarn = YarnCard {
         linear_density: 3e-4,
         radius: 5e-4,
-        stretch_stiffness: 8.0,
+        stretch_stiffness: 0.5,
         bending_stiffness: 8e-10,
         friction_coefficient: 0.3,
         mass_damping: 0.0,
-        stiffness_damping: 0.0,
+        stiffness_damping: 0.05,
         plies: 2,
         twist: 0.0,
     };
@@ -27,160 +23,148 @@ fn cards() -> (YarnCard, FabricCard) {
 }
 
 fn charts() -> Vec<Chart> {
-    let named = [Chart::stockinette(), Chart::garter(), Chart::seed(), Chart::moss()];
-    let sized = [Chart::rib(2, 2), Chart::basket(3, 2), Chart::welting(2, 1)].map(Result::unwrap);
-    named.into_iter().chain(sized).collect()
+    vec![
+        Chart::stockinette(),
+        Chart::reverse_stockinette(),
+        Chart::garter(),
+        Chart::rib(1, 1).unwrap(),
+        Chart::rib(2, 3).unwrap(),
+        Chart::seed(),
+        Chart::moss(),
+        Chart::basket(2, 3).unwrap(),
+        Chart::welting(2, 2).unwrap(),
+    ]
 }
 
-/// Every chart as a fabric of 12 × 10 loops, worked in every way.
-fn fabrics() -> Vec<Network> {
-    let (_, card) = cards();
-    let charts: Vec<Chart> = charts().iter().map(|chart| chart.repeat(12, 10).unwrap()).collect();
-    charts.iter().flat_map(|chart| WORKINGS.map(|working| knit::fabric(chart, working, &card))).collect()
-}
-
-fn tiles() -> Vec<(Chart, Network)> {
-    let (_, card) = cards();
-    charts().into_iter().map(|chart| (chart.smallest_repeat(), knit::tile(&chart.smallest_repeat(), &card))).collect()
-}
-
-#[test]
-fn yarn_runs_forward() {
-    for network in fabrics().iter().chain(tiles().iter().map(|(_, tile)| tile)) {
-        for y in 0..network.yarn_count() {
-            let arcs = &network.arc_length[network.yarn_passes(YarnId::new(y))];
-            assert!(arcs.windows(2).all(|pair| pair[1] > pair[0]));
-        }
-    }
+fn workings() -> [Working; 3] {
+    [Working::Flat { first_row: Side::RightSide }, Working::Flat { first_row: Side::WrongSide }, Working::Round]
 }
 
 #[test]
-fn four_nodes_a_loop_and_two_passes_a_node() {
-    let (_, card) = cards();
-    for working in WORKINGS {
-        let network = knit::fabric(&Chart::stockinette().repeat(40, 40).unwrap(), working, &card);
-        let a_loop = network.node_count() as f64 / network.loops.len() as f64;
-        assert!((4.0..4.2).contains(&a_loop), "{a_loop} nodes a loop");
-    }
-    for (_, tile) in tiles() {
-        assert_eq!(tile.node_count(), 4 * tile.loops.len());
-    }
-    for network in fabrics() {
-        assert_eq!(network.stitches.len(), 2 * network.loops.len());
-        for node in network.loops.iter().flat_map(|info| &info.nodes) {
-            assert_eq!(network.stack(*node).len(), 2);
-        }
-    }
-}
-
-#[test]
-fn at_most_eleven_blocks_in_a_row_of_an_interior_node() {
+fn nodes_blocks_and_arc_lengths() {
     let (yarn, card) = cards();
-    for network in fabrics() {
-        let system = System::new(&network, &yarn, &card);
-        let [rows, columns] = network.chart_size;
-        let inside = network
-            .loops
-            .iter()
-            .filter(|info| (2..rows - 2).contains(&info.row) && (2..columns - 2).contains(&info.column));
-        for node in inside.flat_map(|info| &info.nodes) {
-            let blocks = system.pattern().row(node.index()).len();
-            assert!((8..=11).contains(&blocks), "{blocks} blocks");
-        }
-    }
-}
-
-#[test]
-fn elements_of_a_loop() {
-    let (yarn, card) = cards();
-    for (_, tile) in tiles() {
-        let mechanics = Mechanics::new(&tile, &yarn, &card, &mut TileCoordinates::new(&tile));
-        let n = tile.loops.len();
-        let found = [
-            mechanics.stretch.len(),
-            mechanics.bending.len(),
-            mechanics.wrapping.len(),
-            mechanics.stitch_length.len(),
-            mechanics.spacing.len(),
-        ];
-        assert_eq!(found, [8 * n, 8 * n, 4 * n, 4 * n, 4 * n]);
-    }
-}
-
-#[test]
-fn a_row_of_a_tile_holds_the_yarn_of_its_loops() {
-    let (_, card) = cards();
-    for (chart, tile) in tiles() {
-        for (y, row) in chart.rows().iter().enumerate() {
-            let changes = (0..row.len()).filter(|&c| row[c] != row[(c + 1) % row.len()]).count();
-            let expected = card.loop_length * (row.len() as f64 + card.transition_length * changes as f64);
-            let (_, length) = tile.yarn_closure[y].unwrap();
-            assert!((length / expected - 1.0).abs() < 1e-12);
-        }
-    }
-}
-
-#[test]
-fn stacks_and_signs_of_knit_and_purl() {
-    for network in fabrics() {
-        for (info, contacts) in network.loops.iter().zip(network.stitches.chunks(2)) {
-            // At the feet the leg passes are the parent's, at the legs the child's own: in a knit both lie in front.
-            let order =
-                if info.knit { [PassKind::Leg, PassKind::FootHead] } else { [PassKind::FootHead, PassKind::Leg] };
-            for node in &info.nodes {
-                let kinds: Vec<PassKind> =
-                    network.stack(*node).iter().map(|pass| network.pass_kind[pass.index()]).collect();
-                assert_eq!(kinds, order);
+    for chart in charts() {
+        let chart = chart.repeat(12 / chart.column_count().min(12), 24 / chart.row_count().min(24)).unwrap();
+        for working in workings() {
+            let network = knit::fabric(&chart, working, &card);
+            let loops = network.loops.len();
+            assert_eq!(loops, chart.loop_count());
+            // Four nodes a loop, and along the edges three a column and two a row at most.
+            let edges = 3 * chart.column_count() + 2 * chart.row_count() + 8;
+            assert!(network.node_count() >= 4 * loops && network.node_count() <= 4 * loops + edges);
+            for y in 0..network.yarn_count() {
+                let arcs = &network.arc_length[network.yarn_passes(YarnId::new(y))];
+                assert!(arcs.windows(2).all(|pair| pair[1] > pair[0]));
             }
-            let signs: Vec<f64> = contacts.iter().map(|contact| contact.wrap_sign).collect();
-            assert_eq!(signs, if info.knit { [1.0, -1.0] } else { [-1.0, 1.0] });
-            for (contact, nodes) in contacts.iter().zip([[0, 1], [3, 2]]) {
-                assert_eq!(contact.nodes, nodes.map(|corner| info.nodes[corner]));
+            for info in &network.loops {
+                for node in &info.nodes {
+                    assert_eq!(network.stack(*node).len(), 2, "every own node holds the loop and its parent");
+                }
+            }
+            assert_eq!(network.stitches.len(), 2 * loops);
+            assert!(network.stitches.iter().all(|contact| contact.pairs.len() == 2 && contact.wrap_sign.abs() == 1.0));
+            let pattern = System::new(&network, &yarn, &card).pattern().clone();
+            let inner = |node: &NodeId| {
+                let [column, row] = network.chart_place[node.index()];
+                let far = |x: f64, n: usize| x > 2.0 && x < n as f64 - 2.0;
+                far(column, chart.column_count()) && far(row, chart.row_count())
+            };
+            for node in network.loops.iter().flat_map(|info| &info.nodes).filter(|node| inner(node)) {
+                assert!(pattern.row(node.index()).len() <= 11, "{} blocks", pattern.row(node.index()).len());
             }
         }
     }
 }
 
-/// Rest lengths of the segments of loops by the nodes that they join.
-fn loop_segments(network: &Network) -> BTreeMap<[NodeId; 2], f64> {
-    let mut segments = BTreeMap::new();
+/// Which nodes meet along yarns and in which order they are stacked, by place on the chart; without direction.
+fn joined(network: &Network) -> (BTreeSet<String>, BTreeSet<String>) {
+    let own: BTreeSet<usize> = network.loops.iter().flat_map(|info| &info.nodes).map(|n| n.index()).collect();
+    let name = |node: NodeId| {
+        let [column, row] = network.chart_place[node.index()];
+        format!("{column:.3},{row:.3}")
+    };
+    let mut segments = BTreeSet::new();
     for y in 0..network.yarn_count() {
         let passes = network.yarn_passes(YarnId::new(y));
         for p in passes.start..passes.end - 1 {
-            if network.segment_kind[p] != SegmentKind::Edge {
-                let mut ends = [network.pass_node[p], network.pass_node[p + 1]];
-                ends.sort();
-                segments.insert(ends, network.arc_length[p + 1] - network.arc_length[p]);
+            let (a, b) = (network.pass_node[p], network.pass_node[p + 1]);
+            if own.contains(&a.index()) && own.contains(&b.index()) {
+                let (a, b) = (name(a), name(b));
+                segments.insert(if a < b { format!("{a} {b}") } else { format!("{b} {a}") });
             }
         }
     }
-    segments
+    let mut stacks = BTreeSet::new();
+    for node in own {
+        let kinds: Vec<_> = network
+            .stack(NodeId::new(node))
+            .iter()
+            .map(|pass| format!("{:?}", network.pass_kind[pass.index()]))
+            .collect();
+        stacks.insert(format!("{} {kinds:?}", name(NodeId::new(node))));
+    }
+    for contact in &network.stitches {
+        stacks.insert(format!("{} sign {}", name(contact.nodes[0]), contact.wrap_sign));
+    }
+    (segments, stacks)
 }
 
 #[test]
-fn the_side_of_the_first_row_does_not_change_the_fabric() {
+fn the_way_a_row_is_worked_does_not_show() {
     let (_, card) = cards();
     for chart in charts() {
-        let chart = chart.repeat(7, 6).unwrap();
-        let [right, wrong] = [WORKINGS[0], WORKINGS[1]].map(|working| knit::fabric(&chart, working, &card));
-        let owned = right.loops.iter().flat_map(|info| &info.nodes);
-        for node in owned {
-            assert_eq!(right.position[node.index()], wrong.position[node.index()]);
-            let kinds = |network: &Network| -> Vec<PassKind> {
-                network.stack(*node).iter().map(|pass| network.pass_kind[pass.index()]).collect()
-            };
-            assert_eq!(kinds(&right), kinds(&wrong));
+        let chart = chart.repeat(6, 6).unwrap();
+        let [a, b, _] = workings().map(|working| joined(&knit::fabric(&chart, working, &card)));
+        assert_eq!(a, b);
+    }
+}
+
+#[test]
+fn knits_and_purls_mirror_each_other() {
+    let (_, card) = cards();
+    let (knits, purls) = (knit::tile(&Chart::stockinette(), &card), knit::tile(&Chart::reverse_stockinette(), &card));
+    for (a, b) in knits.stitches.iter().zip(&purls.stitches) {
+        assert_eq!(a.wrap_sign, -b.wrap_sign);
+    }
+    for node in 0..4 {
+        let (a, b) = (knits.stack(NodeId::new(node)), purls.stack(NodeId::new(node)));
+        assert_eq!(a.iter().rev().collect::<Vec<_>>(), b.iter().collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn energies_do_not_notice_rigid_motion() {
+    use glam::{DQuat, DVec3};
+    use wale::fabric::{Coordinates, Mechanics};
+    let (yarn, card) = cards();
+    let network = knit::fabric(&Chart::seed().repeat(3, 3).unwrap(), Working::default(), &card);
+    let mut coordinates = Coordinates::new(&network);
+    let mechanics = Mechanics::new(&network, &yarn, &card, &mut coordinates);
+    // Off the flat layout, where every kind of energy has something to say.
+    let bent = |x: DVec3| x + 1e-3 * DVec3::new((900.0 * x.y).sin(), (700.0 * x.x).cos(), (800.0 * (x.x + x.y)).sin());
+    let turn = DQuat::from_scaled_axis(DVec3::new(0.4, -1.1, 0.7));
+    let here: Vec<DVec3> = network.position.iter().map(|x| bent(*x)).collect();
+    let there: Vec<DVec3> = here.iter().map(|x| turn * *x + DVec3::new(0.3, -0.2, 0.1)).collect();
+    let shifted: Vec<f64> = network.arc_length.iter().map(|u| u + 0.25).collect();
+    let q = coordinates.gather(&here, &network.arc_length);
+    for other in [coordinates.gather(&there, &network.arc_length), coordinates.gather(&here, &shifted)] {
+        for set in mechanics.sets() {
+            let (a, b) = (set.total(&q), set.total(&other));
+            assert!(a > 0.0 || set.name() == "stitch length", "{} is zero", set.name());
+            assert!((a - b).abs() <= 1e-9 * a.abs().max(1e-12), "{}: {a} {b}", set.name());
         }
-        for (a, b) in right.stitches.iter().zip(&wrong.stitches) {
-            assert_eq!((a.nodes, a.wrap_sign, a.pairs.len()), (b.nodes, b.wrap_sign, b.pairs.len()));
-            for (a, b) in a.pairs.iter().zip(&b.pairs) {
-                assert_eq!(a.pair, b.pair);
+    }
+    // Action and reaction: forces sum to zero.
+    for set in mechanics.sets() {
+        let (mut sum, mut size) = ([0.0; 3], 0.0f64);
+        set.visit_gradient(&q, &mut |stencil, gradient| {
+            for (dof, g) in stencil.iter().zip(gradient) {
+                if let k @ 0..3 = *dof as usize % 5 {
+                    sum[k] += g;
+                    size = size.max(g.abs());
+                }
             }
-        }
-        let (a, b) = (loop_segments(&right), loop_segments(&wrong));
-        assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>());
-        for (ends, length) in &a {
-            assert!((length / b[ends] - 1.0).abs() < 1e-9);
-        }
+        });
+        assert!(sum.iter().all(|s| s.abs() <= 1e-9 * size.max(1e-12)), "{}: {sum:?}", set.name());
     }
 }
