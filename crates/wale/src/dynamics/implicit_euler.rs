@@ -129,7 +129,12 @@ impl Newton {
             if !slope.is_finite() {
                 return Err(StepError::NotFinite);
             }
-            let length = self.line_search(system, q, energy, slope, &mut report)?;
+            let length = match self.line_search(system, q, energy, slope, &mut report) {
+                Ok(length) => length,
+                // A step that got somewhere stands; the report says that it did not converge.
+                Err(StepError::LineSearch) if report.iterations > 1 => break,
+                Err(error) => return Err(error),
+            };
             let largest = largest_move(&self.direction, system.coordinates.node_count());
             report.last_move = length * largest;
             if report.last_move <= settings.tolerance {

@@ -78,7 +78,7 @@ pub struct SimulationError {
 /// Newton iterations, as a share of the most allowed, below which the next step is longer.
 const EASY: f64 = 0.34;
 /// A step that ends this many times short of the tolerance is taken again, shorter.
-const FAR_FROM_CONVERGED: f64 = 30.0;
+const FAR_FROM_CONVERGED: f64 = 100.0;
 
 impl Simulation {
     /// Sets up a fabric at rest where its plan places it.
