@@ -207,6 +207,6 @@ fn a_run_can_be_cut_short() {
     let workshop = Workshop::new();
     assert_succeeds(&workshop.run("scene.toml", "short.run", &["--duration", "0.01"]));
     let resolved = fs::read_to_string(workshop.path("short.run").join("scene.resolved.toml")).unwrap();
-    assert!(resolved.contains("duration = 0.01"), "{resolved}");
+    assert!(resolved.contains("duration = \"0.01 s\""), "{resolved}");
     assert!(frame_count(&workshop.path("short.run")) < frame_count(&whole()));
 }

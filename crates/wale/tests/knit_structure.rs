@@ -44,7 +44,7 @@ fn workings() -> [Working; 3] {
 fn nodes_blocks_and_arc_lengths() {
     let (yarn, card) = cards();
     for chart in charts() {
-        let chart = chart.repeat(12 / chart.column_count().min(12), 24 / chart.row_count().min(24)).unwrap();
+        let chart = chart.repeat(12, 24).unwrap();
         for working in workings() {
             let network = knit::fabric(&chart, working, &card);
             let loops = network.loops.len();
@@ -137,7 +137,7 @@ fn energies_do_not_notice_rigid_motion() {
     use glam::{DQuat, DVec3};
     use wale::fabric::{Coordinates, Mechanics};
     let (yarn, card) = cards();
-    let network = knit::fabric(&Chart::seed().repeat(3, 3).unwrap(), Working::default(), &card);
+    let network = knit::fabric(&Chart::seed().repeat(6, 6).unwrap(), Working::default(), &card);
     let mut coordinates = Coordinates::new(&network);
     let mechanics = Mechanics::new(&network, &yarn, &card, &mut coordinates);
     // Off the flat layout, where every kind of energy has something to say.

@@ -137,8 +137,9 @@ mod tests {
         let chart = Chart::rib(2, 2).unwrap();
         let tile = knit::tile(&chart, &card);
         let relaxed = relax_tile(&tile, &yarn, &card, &TileSettings::default());
+        assert!(relaxed.converged, "residual {:e}", relaxed.residual);
         for working in [Working::default(), Working::Round] {
-            let mut network = knit::fabric(&chart.repeat(3, 6).unwrap(), working, &card);
+            let mut network = knit::fabric(&chart.repeat(12, 6).unwrap(), working, &card);
             lay_loop_shapes(&mut network, &tile, &relaxed, working == Working::Round);
             for y in 0..network.yarn_count() {
                 let arcs = &network.arc_length[network.yarn_passes(YarnId::new(y))];
@@ -148,7 +149,8 @@ mod tests {
             if working != Working::Round {
                 let (a, b) = (network.loops[12 + 1].nodes[2], network.loops[12 + 5].nodes[2]);
                 let step = network.position[b.index()] - network.position[a.index()];
-                assert!((step - DVec3::X * 4.0 * relaxed.wale_spacing).length() < 1e-12);
+                let off = step - DVec3::X * 4.0 * relaxed.wale_spacing;
+                assert!(off.length() < 1e-12, "{off}");
             }
             // A loop of an inner row holds as much yarn as the tile's loops do on the average.
             let row: Vec<&crate::model::LoopInfo> = network.loops.iter().filter(|info| info.row == 2).collect();

@@ -19,11 +19,12 @@ fn five_lines_are_a_scene() {
     assert_eq!((scene.chart.column_count(), scene.chart.row_count()), (6, 4));
     assert_eq!(scene.working, Working::default());
     assert_eq!(scene.yarn.linear_density, 500e-6);
-    // B4: k_w L ℓ = 2.1 k_b.
+    // The fabric card follows from yarn and loop length in the default proportions.
+    let proportions = crate::model::LoopProportions::default();
     let card = &scene.fabric;
     let wrap = card.wrapping_stiffness * card.stitch_length * card.loop_length / scene.yarn.bending_stiffness;
-    assert!((wrap - 2.1).abs() < 1e-12);
-    assert!((card.loop_length - 0.752 * 0.02).abs() < 1e-15);
+    assert!((wrap - proportions.wrapping).abs() < 1e-12);
+    assert!((card.loop_length - proportions.path_ratio * 0.02).abs() < 1e-15);
     assert_eq!(scene.plan.simulation.gravity, DVec3::new(0.0, 0.0, -9.80665));
 }
 
@@ -71,7 +72,8 @@ fn the_papers_table_is_taken_in_true_units() {
 #[test]
 fn stitch_size_may_stand_in_place_of_the_loop_length() {
     let scene = read(&format!("[fabric]\nwale_spacing = \"5 mm\"\n{CHART}"));
-    assert!((scene.fabric.loop_length - 5e-3 / 0.317).abs() < 1e-15);
+    let proportions = crate::model::LoopProportions::default();
+    assert!((scene.fabric.loop_length - 5e-3 / proportions.wale_spacing).abs() < 1e-15);
     assert_eq!(scene.fabric.wale_spacing, 5e-3);
 }
 
