@@ -30,6 +30,8 @@ pub struct BlockMatrix<T = f64> {
 pub struct RowChunk<'a, T = f64> {
     pattern: &'a BlockPattern,
     rows: Range<usize>,
+    /// Place of its first block in the whole matrix.
+    first_block: usize,
     values: &'a mut [T],
 }
 
@@ -91,10 +93,14 @@ impl<T: Scalar> BlockMatrix<T> {
     ///
     /// `bounds` ascends, starts at 0 and ends at the number of rows.
     pub fn split_rows<'a>(&'a mut self, bounds: &'a [usize]) -> impl Iterator<Item = RowChunk<'a, T>> + use<'a, T> {
-        let mut rest =
-            RowChunk { pattern: &self.pattern, rows: 0..self.pattern.rows(), values: self.values.as_mut_slice() };
+        let mut rest = RowChunk {
+            pattern: &self.pattern,
+            rows: 0..self.pattern.rows(),
+            first_block: 0,
+            values: self.values.as_mut_slice(),
+        };
         bounds.windows(2).map(move |pair| {
-            let empty = RowChunk { pattern: rest.pattern, rows: 0..0, values: &mut [] };
+            let empty = RowChunk { pattern: rest.pattern, rows: 0..0, first_block: 0, values: &mut [] };
             let (head, tail) = std::mem::replace(&mut rest, empty).split_at(pair[1]);
             rest = tail;
             head
@@ -115,7 +121,8 @@ impl<T: Scalar> BlockMatrix<T> {
         fill: impl Fn(&mut S, RowChunk<'_, T>) + Sync,
     ) {
         assert_eq!(bounds.len(), companions.len() + 1);
-        let chunk = RowChunk { pattern: &self.pattern, rows: 0..self.pattern.rows(), values: &mut self.values };
+        let chunk =
+            RowChunk { pattern: &self.pattern, rows: 0..self.pattern.rows(), first_block: 0, values: &mut self.values };
         halve(bounds, companions, chunk, &fill);
     }
 
@@ -187,7 +194,7 @@ impl<T: Scalar> BlockMatrix<T> {
             }
         };
         let bounds = [0, pattern.rows()];
-        let everything = RowChunk { pattern: &pattern, rows: 0..bounds[1], values: &mut self.values };
+        let everything = RowChunk { pattern: &pattern, rows: 0..bounds[1], first_block: 0, values: &mut self.values };
         everything.for_each_row(&fix);
     }
 
@@ -275,6 +282,16 @@ impl<'a, T: Scalar> RowChunk<'a, T> {
         &mut self.values.as_chunks_mut().0[local]
     }
 
+    /// The block at a place of the whole matrix, as [`BlockPattern::position`] gives it.
+    ///
+    /// # Panics
+    /// If it is outside this chunk.
+    #[inline(always)]
+    pub fn block_at(&mut self, place: usize) -> &mut [T; BLOCK] {
+        let local = place - self.first_block;
+        &mut self.values.as_chunks_mut().0[local]
+    }
+
     /// Columns and blocks of one row of this chunk.
     ///
     /// # Panics
@@ -298,7 +315,10 @@ impl<'a, T: Scalar> RowChunk<'a, T> {
         let start = self.pattern.row_start();
         let length = (start[row] - start[self.rows.start]) * BLOCK;
         let (head, tail) = self.values.split_at_mut(length);
-        let chunk = |rows, values| Self { pattern: self.pattern, rows, values };
+        let chunk = |rows: Range<usize>, values| {
+            let first_block = start[rows.start];
+            Self { pattern: self.pattern, rows, first_block, values }
+        };
         (chunk(self.rows.start..row, head), chunk(row..self.rows.end, tail))
     }
 

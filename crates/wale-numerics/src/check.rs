@@ -18,6 +18,26 @@ impl<const N: usize> Local<N> {
         Self { energy: 0.0, gradient: [0.0; N], hessian: [[0.0; N]; N] }
     }
 
+    /// Adds another sum.
+    #[inline]
+    pub fn add(&mut self, other: &Self) {
+        self.add_gradient((other.energy, other.gradient));
+        for (row, other) in self.hessian.iter_mut().zip(&other.hessian) {
+            for (h, o) in row.iter_mut().zip(other) {
+                *h += o;
+            }
+        }
+    }
+
+    /// Adds a value and a gradient without curvature.
+    #[inline]
+    pub fn add_gradient(&mut self, (energy, gradient): (f64, [f64; N])) {
+        self.energy += energy;
+        for (g, o) in self.gradient.iter_mut().zip(&gradient) {
+            *g += o;
+        }
+    }
+
     /// Adds `factor · a bᵀ` and its mirror image, halved each, so that the Hessian stays symmetric.
     pub fn add_symmetric(&mut self, factor: f64, a: &[f64; N], b: &[f64; N]) {
         for i in 0..N {

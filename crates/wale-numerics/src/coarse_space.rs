@@ -6,7 +6,7 @@
 
 use crate::block_matrix::{BLOCK, BlockMatrix, SLOTS};
 use crate::block_pattern::BlockPattern;
-use crate::preconditioner::Preconditioner;
+use crate::preconditioner::{InTwoHalves, Preconditioner};
 use crate::prolongation::Prolongation;
 use crate::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 use rayon::prelude::*;
@@ -147,7 +147,14 @@ impl CoarseSpace {
 
 impl Preconditioner for CoarseSpace {
     fn add(&mut self, residual: &[f64], out: &mut [f64]) {
-        assert!(residual.len() == self.free.len() * SLOTS && out.len() == residual.len());
+        self.take(residual);
+        self.give(out);
+    }
+}
+
+impl InTwoHalves for CoarseSpace {
+    fn take(&mut self, residual: &[f64]) {
+        assert!(residual.len() == self.free.len() * SLOTS);
         let (prolongation, free) = (&self.prolongation, &self.free);
         self.pieces.par_iter_mut().for_each(|piece| piece.restrict(residual, prolongation, free));
         self.solution.fill(0.0);
@@ -160,6 +167,11 @@ impl Preconditioner for CoarseSpace {
             }
         }
         self.cholesky.solve_in_place(&mut self.solution);
+    }
+
+    fn give(&self, out: &mut [f64]) {
+        assert!(out.len() == self.free.len() * SLOTS);
+        let (prolongation, free) = (&self.prolongation, &self.free);
         let coarse = self.solution.as_chunks::<SLOTS>().0;
         out.par_chunks_mut(self.rows_per_piece * SLOTS).zip(&self.pieces).for_each(|(out, piece)| {
             let blocks = out.as_chunks_mut::<SLOTS>().0;

@@ -125,8 +125,12 @@ impl ConjugateGradient {
         };
         self.history.clear();
         self.history.reserve(settings.max_iterations + 1);
-        matrix.apply(x, &mut self.residual);
-        vector::scale_and_add(&mut self.residual, -1.0, b);
+        if x.iter().all(|&x| x == 0.0) {
+            vector::copy(b, &mut self.residual);
+        } else {
+            matrix.apply(x, &mut self.residual);
+            vector::scale_and_add(&mut self.residual, -1.0, b);
+        }
         filter(&mut self.residual);
         preconditioner.apply(&self.residual, &mut self.preconditioned);
         filter(&mut self.preconditioned);

@@ -26,18 +26,38 @@ impl<P: Preconditioner + ?Sized> Preconditioner for &mut P {
     }
 }
 
-/// The sum of two approximate inverses, as of a local one and a coarse space.
+/// An approximate inverse in two halves, the first of which writes to memory of its own and can go on beside others.
+pub trait InTwoHalves: Preconditioner {
+    /// Takes in the residual.
+    fn take(&mut self, residual: &[f64]);
+    /// `out += M⁻¹ residual` of the residual taken in last.
+    fn give(&self, out: &mut [f64]);
+}
+
+impl<P: InTwoHalves + ?Sized> InTwoHalves for &mut P {
+    fn take(&mut self, residual: &[f64]) {
+        (**self).take(residual);
+    }
+    fn give(&self, out: &mut [f64]) {
+        (**self).give(out);
+    }
+}
+
+/// The sum of two approximate inverses, as of a local one and a coarse space; the second takes in the residual while
+/// the first is applied.
 #[derive(Clone, Debug)]
 pub struct Additive<A, B>(pub A, pub B);
 
-impl<A: Preconditioner, B: Preconditioner> Preconditioner for Additive<A, B> {
+impl<A: Preconditioner + Send, B: InTwoHalves + Send> Preconditioner for Additive<A, B> {
     fn add(&mut self, residual: &[f64], out: &mut [f64]) {
-        self.0.add(residual, out);
-        self.1.add(residual, out);
+        let Self(first, second) = self;
+        rayon::join(|| second.take(residual), || first.add(residual, out));
+        second.give(out);
     }
     fn apply(&mut self, residual: &[f64], out: &mut [f64]) {
-        self.0.apply(residual, out);
-        self.1.add(residual, out);
+        let Self(first, second) = self;
+        rayon::join(|| second.take(residual), || first.apply(residual, out));
+        second.give(out);
     }
 }
 

@@ -1,25 +1,20 @@
 //! One implicit Euler step: the minimum of inertia, energies, friction and damping.
 
 use glam::DVec3;
-use rayon::prelude::*;
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 
 use super::linear::{Linear, LinearReport, LinearSettings};
-use super::system::{System, Terms, Workspace};
+use super::system::{System, Workspace};
 use crate::fabric::coordinates::BLOCK;
-use crate::fabric::elements::Linearisation;
 
 /// How a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// Most iterations.
     pub max_iterations: usize,
-    /// Largest move of a node in the last iteration \[m\].
+    /// Move of the nodes in the last iteration, root mean square \[m\]; no single node may move ten times as far.
     pub tolerance: f64,
-    /// Convexity of the Hessian that a step begins with: 1 is Gauss–Newton, 0 is Newton's own matrix wherever that is
-    /// positive definite (`docs/design/002-newton.md` has the measurements).
-    pub convexity: f64,
 }
 
 /// What a step took.
@@ -33,7 +28,7 @@ pub struct NewtonReport {
     pub backtracks: usize,
     /// Largest move of a node in the last iteration \[m\].
     pub last_move: f64,
-    /// Whether that is below the tolerance.
+    /// Whether the last iteration's moves are below the tolerance.
     pub converged: bool,
 }
 
@@ -57,6 +52,11 @@ pub enum StepError {
     Linear(String),
 }
 
+/// How much further than the root mean square a single node may move in the last iteration.
+const SINGLE_NODE: f64 = 10.0;
+/// Most halvings of a step that does not lower the energy.
+const MOST_HALVINGS: usize = 30;
+
 /// Memory that Newton's method keeps between steps.
 pub struct Newton {
     matrix: BlockMatrix,
@@ -67,8 +67,6 @@ pub struct Newton {
     free: Vec<bool>,
     linear: Linear,
     linear_settings: LinearSettings,
-    /// Convexity of the Hessian that the next iteration tries.
-    convexity: f64,
     /// Scratch of sums.
     pub work: Workspace,
 }
@@ -86,7 +84,6 @@ impl Newton {
             free: system.coordinates.free().to_vec(),
             linear: Linear::None,
             linear_settings,
-            convexity: 1.0,
             work: Workspace::default(),
         }
     }
@@ -105,8 +102,8 @@ impl Newton {
         }
     }
 
-    /// Moves `q` to the minimum of the terms near it. `renew` is called with `q` before every iteration, for contacts
-    /// that are found anew.
+    /// Moves `q` to the minimum of the terms near it. `renew` is called with the place that is looked at next, for
+    /// contacts that are found anew.
     ///
     /// # Errors
     /// If numbers are not finite, a system cannot be solved, or the search ends far from a minimum.
@@ -117,109 +114,95 @@ impl Newton {
         settings: &NewtonSettings,
         mut renew: impl FnMut(&mut System, &[f64]),
     ) -> Result<NewtonReport, StepError> {
-        // Every step starts alike, whatever came before: a resumed run must find the same bits.
-        self.convexity = settings.convexity;
         let mut report = NewtonReport { last_move: f64::INFINITY, ..NewtonReport::default() };
+        let mut previous = 0.0;
+        renew(system, q);
+        let mut energy = self.linearise(system, q)?;
         while report.iterations < settings.max_iterations {
-            renew(system, q);
-            let (energy, solved) = self.solve(system, q)?;
-            report.linear_iterations += solved.iterations;
+            report.linear_iterations += self.solve(system)?.iterations;
             report.iterations += 1;
             let slope: f64 = self.direction.iter().zip(&self.gradient).map(|(d, g)| d * g).sum();
             if !slope.is_finite() {
                 return Err(StepError::NotFinite);
             }
-            let length = match self.line_search(system, q, energy, slope, &mut report) {
-                Ok(length) => length,
-                // A step that got somewhere stands; the report says that it did not converge.
-                Err(StepError::LineSearch) if report.iterations > 1 => break,
-                Err(error) => return Err(error),
-            };
-            let largest = largest_move(&self.direction, system.coordinates.node_count());
-            report.last_move = length * largest;
-            if report.last_move <= settings.tolerance {
+            let mut length = system.longest_step(q, &self.direction);
+            let (mean, largest) = moves(&self.direction, system.coordinates.node_count());
+            // What is left after this move shrinks as fast as the moves do [Hairer1996, section IV.8].
+            let ratio = if length < 1.0 { 1.0 } else { mean / previous };
+            let left = if ratio < 0.5 { ratio / (1.0 - ratio) } else { 1.0 };
+            previous = mean;
+            if left * mean <= settings.tolerance && left * largest <= SINGLE_NODE * settings.tolerance {
+                self.try_length(q, length);
+                q.copy_from_slice(&self.trial);
+                report.last_move = length * largest;
                 report.converged = true;
                 break;
             }
+            // A whole step nearly always lowers the energy: linearise there at once, instead of asking first.
+            self.try_length(q, length);
+            renew(system, &self.trial);
+            let trial = std::mem::take(&mut self.trial);
+            let mut new = self.linearise(system, &trial);
+            self.trial = trial;
+            // Differences below round-off of the total say nothing.
+            let noise = 1e-13 * energy.abs() + 1e-30;
+            let low = |energy_there: f64, length: f64| energy_there <= energy + 1e-4 * length * slope + noise;
+            if !new.as_ref().is_ok_and(|&new| low(new, length)) {
+                let mut shorter = 0;
+                loop {
+                    length *= 0.5;
+                    shorter += 1;
+                    self.try_length(q, length);
+                    renew(system, &self.trial);
+                    if low(system.energy(&self.trial, &mut self.work), length) {
+                        break;
+                    }
+                    if shorter == MOST_HALVINGS {
+                        // A step that got somewhere stands; the report says that it did not converge.
+                        return if report.iterations > 1 { Ok(report) } else { Err(StepError::LineSearch) };
+                    }
+                }
+                report.backtracks += shorter;
+                let trial = std::mem::take(&mut self.trial);
+                new = self.linearise(system, &trial);
+                self.trial = trial;
+            }
+            energy = new?;
+            q.copy_from_slice(&self.trial);
+            report.last_move = length * largest;
         }
         Ok(report)
     }
 
-    /// Finds the search direction at `q`: Newton's own where its matrix is positive definite, else the least convex
-    /// blend that is. Returns the energy and what the linear solve took.
-    fn solve(&mut self, system: &System, q: &[f64]) -> Result<(f64, LinearReport), StepError> {
+    /// Gradient and matrix at `q`; returns the energy.
+    fn linearise(&mut self, system: &System, q: &[f64]) -> Result<f64, StepError> {
+        let energy = system.linearise(q, &mut self.gradient, &mut self.matrix, &mut self.work);
+        if energy.is_finite() { Ok(energy) } else { Err(StepError::NotFinite) }
+    }
+
+    /// Finds the search direction from gradient and matrix.
+    fn solve(&mut self, system: &System) -> Result<LinearReport, StepError> {
+        let failed = |error: super::linear::LinearError| StepError::Linear(error.to_string());
         if matches!(self.linear, Linear::None) {
-            self.linear = Linear::new(system, &self.free, self.linear_settings)
-                .map_err(|error| StepError::Linear(error.to_string()))?;
+            self.linear = Linear::new(system, &self.free, self.linear_settings).map_err(failed)?;
         }
-        loop {
-            let energy = system.linearise(
-                Terms::Dynamic,
-                Linearisation::Blended(self.convexity),
-                q,
-                &mut self.gradient,
-                &mut self.matrix,
-                &mut self.work,
-            );
-            if !energy.is_finite() {
-                return Err(StepError::NotFinite);
-            }
-            for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
-                *d = if *free { -g } else { 0.0 };
-            }
-            self.matrix.fix_slots(&self.free, 1.0);
-            match self.linear.solve(&self.matrix, &mut self.direction) {
-                Ok(report) => {
-                    // Try again with less next time.
-                    self.convexity = if self.convexity > 0.05 { 0.5 * self.convexity } else { 0.0 };
-                    return Ok((energy, report));
-                }
-                Err(error) if self.convexity >= 1.0 => return Err(StepError::Linear(error.to_string())),
-                Err(_) => self.convexity = (2.0 * self.convexity).clamp(0.1, 1.0),
-            }
+        for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
+            *d = if *free { -g } else { 0.0 };
         }
+        self.matrix.fix_slots(&self.free, 1.0);
+        self.linear.solve(&self.matrix, &mut self.direction).map_err(failed)
     }
 
-    /// Moves `q` along the direction as far as the energy falls enough; returns the step length.
-    fn line_search(
-        &mut self,
-        system: &System,
-        q: &mut [f64],
-        energy: f64,
-        slope: f64,
-        report: &mut NewtonReport,
-    ) -> Result<f64, StepError> {
-        let mut length = system.longest_step(q, &self.direction);
-        // Differences below round-off of the total say nothing: the step is accepted then.
-        let noise = 1e-13 * energy.abs() + 1e-30;
-        if -slope <= noise {
-            return Ok(self.apply(q, length));
+    /// Sets the trial to `q` and a part of the direction.
+    fn try_length(&mut self, q: &[f64], length: f64) {
+        for ((trial, x), d) in self.trial.iter_mut().zip(q).zip(&self.direction) {
+            *trial = x + length * d;
         }
-        for _ in 0..30 {
-            for ((trial, x), d) in self.trial.iter_mut().zip(q.iter()).zip(&self.direction) {
-                *trial = x + length * d;
-            }
-            let new = system.energy(Terms::Dynamic, &self.trial, &mut self.work);
-            if new <= energy + 1e-4 * length * slope + noise {
-                q.copy_from_slice(&self.trial);
-                return Ok(length);
-            }
-            length *= 0.5;
-            report.backtracks += 1;
-        }
-        Err(StepError::LineSearch)
-    }
-
-    fn apply(&self, q: &mut [f64], length: f64) -> f64 {
-        for (x, d) in q.iter_mut().zip(&self.direction) {
-            *x += length * d;
-        }
-        length
     }
 
     /// Gradient of all terms at `q`: minus the force that holds a slot where it is.
     pub fn reaction(&mut self, system: &System, q: &[f64]) -> &[f64] {
-        system.gradient(Terms::Dynamic, q, &mut self.gradient, &mut self.work);
+        system.gradient(q, &mut self.gradient, &mut self.work);
         &self.gradient
     }
 
@@ -230,12 +213,13 @@ impl Newton {
     }
 }
 
-/// Longest move of a node in a global vector \[m\].
-fn largest_move(direction: &[f64], node_count: usize) -> f64 {
-    direction[..BLOCK * node_count]
-        .par_chunks(BLOCK)
-        .with_min_len(4096)
-        .map(|d| DVec3::from_slice(d).length_squared())
-        .reduce(|| 0.0, f64::max)
-        .sqrt()
+/// Moves of the nodes in a global vector: root mean square and largest \[m\].
+fn moves(direction: &[f64], node_count: usize) -> (f64, f64) {
+    let (mut sum, mut largest) = (0.0, 0.0f64);
+    for d in direction[..BLOCK * node_count].as_chunks::<BLOCK>().0 {
+        let square = DVec3::from_slice(d).length_squared();
+        sum += square;
+        largest = largest.max(square);
+    }
+    ((sum / node_count.max(1) as f64).sqrt(), largest.sqrt())
 }

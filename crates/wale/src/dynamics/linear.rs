@@ -127,8 +127,9 @@ impl Linear {
             }
             Self::ConjugateGradient(iterative) => {
                 let Additive(local, coarse) = &mut iterative.preconditioner;
-                local.factor(matrix).map_err(|_| LinearError::NegativeCurvature)?;
-                coarse.factor(matrix)?;
+                let (local, coarse) = rayon::join(|| local.factor(matrix), || coarse.factor(matrix));
+                local.map_err(|_| LinearError::NegativeCurvature)?;
+                coarse?;
                 iterative.right_side.copy_from_slice(x);
                 x.fill(0.0);
                 let report = iterative.gradient.solve(

@@ -1,11 +1,12 @@
 //! What is frozen for a step before it is solved, and what friction remembers after it.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::state::State;
 use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
-use crate::energy::{BendRate, Inertia, ObstacleContact, StretchRate, WrapRate};
+use crate::energy::{Inertia, ObstacleContact, Rate};
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::model::Obstacle;
 
@@ -36,44 +37,32 @@ impl System {
         // Inertia pulls towards q + h v, mass damping towards q.
         let reach = h / (1.0 + alpha * h);
         let density = self.yarn.linear_density;
-        let inertia_stencils = self.stretch.set.stencils.as_slice();
-        self.inertia.update(q, |index, element, local| {
+        self.segments.update(q, |stencil, (_, inertia), local| {
             let rest = local[7] - local[3];
-            let stencil = &inertia_stencils[index];
-            *element = Inertia {
+            *inertia = Inertia {
                 factor: factor * density * rest / 6.0,
                 direction: std::array::from_fn(|k| (local[4 + k] - local[k]) / rest),
                 target: std::array::from_fn(|i| local[i] + reach * v[stencil[i] as usize]),
             };
         });
         let beta_over_h = self.yarn.stiffness_damping / h;
-        if beta_over_h > 0.0 {
-            let stretch_stiffness = self.yarn.stretch_stiffness;
-            self.stretch_rate.update(q, |_, element, local| {
-                let rest = local[7] - local[3];
-                let d = DVec3::from_slice(&local[4..7]) - DVec3::from_slice(&local[..3]);
-                *element =
-                    StretchRate { stiffness: beta_over_h * stretch_stiffness * rest, previous: d.length() / rest };
-            });
-            let bending_stiffness = self.yarn.bending_stiffness;
-            self.bend_rate.update(q, |_, element, local| {
-                *element = BendRate::starting_at(local, bending_stiffness, beta_over_h);
-            });
-            let wraps = &self.wrapping.set.elements;
-            self.wrap_rate.update(q, |index, element, local| {
-                *element = WrapRate::starting_at(local, &wraps[index], beta_over_h);
-            });
-        }
+        self.bends.update(q, |_, (bending, rate), local| {
+            *rate = if beta_over_h > 0.0 { Rate::of_bend(local, bending.stiffness, beta_over_h) } else { Rate::NONE };
+        });
+        self.wraps.update(q, |_, (wrapping, rate), local| {
+            *rate = if beta_over_h > 0.0 { Rate::of_wrap(local, wrapping, beta_over_h) } else { Rate::NONE };
+        });
         self.compression.evaluate(q, self.yarn.stretch_stiffness, compression);
         let (mu, least) = (self.yarn.friction_coefficient, self.card.residual_compression);
         let rubbing = &self.rubbing;
         let lambda = &*compression;
-        self.friction.update(q, |index, element, _| {
-            let (pass, contact) = rubbing[index];
-            element.anchor = state.anchors[pass.index()];
-            // Without friction the spring is there but carries nothing.
-            element.limit = if friction { mu * lambda[contact].max(least) } else { 0.0 };
-        });
+        self.friction.set.elements.par_iter_mut().zip(rubbing).with_min_len(4096).for_each(
+            |(element, &(pass, contact))| {
+                element.anchor = state.anchors[pass.index()];
+                // Without friction the spring is there but carries nothing.
+                element.limit = if friction { mu * lambda[contact].max(least) } else { 0.0 };
+            },
+        );
     }
 
     /// Moves the friction anchors of the passes to where the step left them.
@@ -98,8 +87,7 @@ impl System {
                 let reach = (1.0 + WATCH) * radius + 2.0 * h * speed;
                 let near = |time: f64| obstacle_distance(obstacle, x, time).0 < reach;
                 if near(state.time) || near(state.time + h) {
-                    let held =
-                        state.obstacle_anchors.chunks_exact(5).any(|a| a[0] as usize == node && a[1] as usize == index);
+                    let held = held_place(&state.obstacle_anchors, node, index).is_some();
                     touches.push(Touch { node: node as u32, obstacle: index as u32, held });
                     let blank = ObstacleContact {
                         stiffness: 0.0,
@@ -116,6 +104,7 @@ impl System {
         }
         if !touches.is_empty() || self.obstacles.set.is_empty() {
             self.obstacles.plan(&self.chunks);
+            self.obstacles.locate(&self.pattern);
         }
         for (k, touch) in touches.iter().enumerate() {
             let obstacle = &obstacles[touch.obstacle as usize];

@@ -10,22 +10,13 @@ use wale_numerics::block_pattern::BlockPattern;
 use super::terms::{AnyTerm, ChunkOutput, Chunks, Term};
 use crate::contact::Compression;
 use crate::energy::{
-    AnchoredSpring, BendRate, Bending, Foundation, Gravity, Inertia, Load, ObstacleContact, Spacing, StitchLength,
-    Stretch, StretchRate, WrapRate, Wrapping,
+    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, Spacing, StitchLength,
+    Stretch, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
-use crate::fabric::elements::{Elements, Linearisation};
+use crate::fabric::elements::Elements;
 use crate::fabric::{Coordinates, Mechanics};
 use crate::model::{FabricCard, Network, NodeId, PassId, YarnCard};
-
-/// Which terms take part.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Terms {
-    /// All: a time step.
-    Dynamic,
-    /// Elastic energies, gravity, loads and the bed: equilibrium without friction.
-    Elastic,
-}
 
 /// A fabric as the solvers see it.
 pub struct System {
@@ -36,18 +27,14 @@ pub struct System {
     /// The fabric card.
     pub card: FabricCard,
     pub(super) chunks: Chunks,
-    pattern: Arc<BlockPattern>,
-    pub(super) stretch: Term<Stretch, 8>,
-    pub(super) bending: Term<Bending, 12>,
-    pub(super) wrapping: Term<Wrapping, 12>,
+    pub(super) pattern: Arc<BlockPattern>,
+    /// Segments of yarn.
+    pub(super) segments: Term<((Stretch, Gravity), Inertia), 8>,
+    pub(super) bends: Term<(Bending, Rate), 12>,
+    pub(super) wraps: Term<(Wrapping, Rate), 12>,
     pub(super) stitch_length: Term<StitchLength, 2>,
     pub(super) spacing: Term<Spacing, 2>,
-    pub(super) gravity: Term<Gravity, 8>,
-    pub(super) inertia: Term<Inertia, 8>,
     pub(super) friction: Term<AnchoredSpring, 1>,
-    pub(super) stretch_rate: Term<StretchRate, 8>,
-    pub(super) bend_rate: Term<BendRate, 12>,
-    pub(super) wrap_rate: Term<WrapRate, 12>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
@@ -71,11 +58,24 @@ struct ChunkWork {
     chunk: usize,
     gradient: Vec<f64>,
     energy: f64,
-    by_term: [f64; MOST_TERMS],
+    by_kind: Vec<(&'static str, f64)>,
 }
 
-/// Most kinds of terms.
-const MOST_TERMS: usize = 16;
+/// Kinds of energy, in the order of reports.
+const KINDS: [&str; 12] = [
+    Stretch::NAME,
+    Bending::NAME,
+    Wrapping::NAME,
+    StitchLength::NAME,
+    Spacing::NAME,
+    Gravity::NAME,
+    Load::NAME,
+    Foundation::NAME,
+    Inertia::NAME,
+    AnchoredSpring::NAME,
+    Rate::NAME,
+    ObstacleContact::NAME,
+];
 
 impl System {
     /// Sets up a fabric without gravity, obstacles or loads.
@@ -84,14 +84,11 @@ impl System {
         let mut coordinates = Coordinates::new(network);
         let mechanics = Mechanics::new(network, yarn, card, &mut coordinates);
         let chunks = Chunks::new(coordinates.block_count());
-        let segments = &mechanics.stretch.stencils;
-        let same = |count: usize| vec![(); count];
-        let gravity = Elements {
-            elements: same(segments.len()).iter().map(|()| Gravity { weight: [0.0; 3] }).collect(),
-            stencils: segments.clone(),
-        };
         let still = Inertia { factor: 0.0, direction: [0.0; 3], target: [0.0; 8] };
-        let inertia = Elements { elements: vec![still; segments.len()], stencils: segments.clone() };
+        let weightless = Gravity { weight: [0.0; 3] };
+        let segments = mechanics.stretch.map(|stretch| ((stretch, weightless), still));
+        let bends = mechanics.bending.map(|bending| (bending, Rate::NONE));
+        let wraps = mechanics.wrapping.map(|wrapping| (wrapping, Rate::NONE));
         let compression = Compression::new(network, &coordinates);
         let mut friction = Elements::default();
         let mut rubbing = Vec::new();
@@ -105,7 +102,7 @@ impl System {
         }
         let mut yarn_at_node = vec![0.0; network.node_count()];
         let initial = coordinates.initial(network);
-        for stencil in segments {
+        for stencil in &segments.stencils {
             let rest = initial[stencil[7] as usize] - initial[stencil[3] as usize];
             for end in [0, 4] {
                 yarn_at_node[stencil[end] as usize / BLOCK] += 0.5 * rest;
@@ -118,17 +115,12 @@ impl System {
             yarn: YarnCard { linear_density: yarn.linear_density / card.path_ratio, ..yarn.clone() },
             card: card.clone(),
             pattern: Arc::new(BlockPattern::from_pairs(0, [])),
-            stretch: Term::new(mechanics.stretch, &chunks),
-            bending: Term::new(mechanics.bending, &chunks),
-            wrapping: Term::new(mechanics.wrapping, &chunks),
+            segments: Term::new(segments, &chunks),
+            bends: Term::new(bends, &chunks),
+            wraps: Term::new(wraps, &chunks),
             stitch_length: Term::new(mechanics.stitch_length, &chunks),
             spacing: Term::new(mechanics.spacing, &chunks),
-            gravity: Term::new(gravity, &chunks),
-            inertia: Term::new(inertia, &chunks),
             friction: Term::new(friction, &chunks),
-            stretch_rate: Term::new(Elements::default(), &chunks),
-            bend_rate: Term::new(Elements::default(), &chunks),
-            wrap_rate: Term::new(Elements::default(), &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
@@ -139,45 +131,31 @@ impl System {
             chunks,
             coordinates,
         };
-        system.set_stiffness_damping(yarn.stiffness_damping);
         let mut pairs = Vec::new();
-        for term in system.terms(Terms::Dynamic) {
+        for term in system.terms() {
             term.pairs(&mut |a, b| pairs.push((a, b)));
         }
         system.pattern = Arc::new(BlockPattern::from_pairs(system.coordinates.block_count(), pairs));
+        system.segments.locate(&system.pattern);
+        system.bends.locate(&system.pattern);
+        system.wraps.locate(&system.pattern);
+        system.stitch_length.locate(&system.pattern);
+        system.spacing.locate(&system.pattern);
+        system.friction.locate(&system.pattern);
         system
     }
 
     /// Sets gravity \[m/s²\].
     pub fn set_gravity(&mut self, gravity: DVec3) {
         let weight = (gravity * self.yarn.linear_density).to_array();
-        for element in &mut self.gravity.set.elements {
-            element.weight = weight;
+        for ((_, gravity), _) in &mut self.segments.set.elements {
+            gravity.weight = weight;
         }
     }
 
-    /// Sets the stiffness damping `β` \[s\].
+    /// Sets the stiffness damping `β` \[s\] of the steps to come.
     pub fn set_stiffness_damping(&mut self, beta: f64) {
         self.yarn.stiffness_damping = beta;
-        let wanted = beta > 0.0;
-        if wanted == self.stretch_rate.set.is_empty() {
-            let count = |n: usize| if wanted { n } else { 0 };
-            let (segments, bends) = (&self.stretch.set.stencils, &self.bending.set.stencils);
-            let rate = StretchRate { stiffness: 0.0, previous: 1.0 };
-            let elements = vec![rate; count(segments.len())];
-            self.stretch_rate.set = Elements { elements, stencils: segments[..count(segments.len())].to_vec() };
-            let rate = BendRate { stiffness: 0.0, previous: 1.0 };
-            let elements = vec![rate; count(bends.len())];
-            self.bend_rate.set = Elements { elements, stencils: bends[..count(bends.len())].to_vec() };
-            let wraps = &self.wrapping.set;
-            self.wrap_rate.set = Elements {
-                elements: wraps.elements[..count(wraps.len())].iter().map(|&wrap| WrapRate { wrap }).collect(),
-                stencils: wraps.stencils[..count(wraps.len())].to_vec(),
-            };
-            self.stretch_rate.plan(&self.chunks);
-            self.bend_rate.plan(&self.chunks);
-            self.wrap_rate.plan(&self.chunks);
-        }
     }
 
     /// Lays the fabric on an elastic bed at a height \[m\] of stiffness \[N/m\] a node; zero takes it away.
@@ -189,6 +167,7 @@ impl System {
             }
         }
         self.bed.plan(&self.chunks);
+        self.bed.locate(&self.pattern);
     }
 
     /// Adds a load; [`System::plan_loads`] must follow the last.
@@ -199,6 +178,7 @@ impl System {
     /// Plans the loads that were added.
     pub fn plan_loads(&mut self) {
         self.loads.plan(&self.chunks);
+        self.loads.locate(&self.pattern);
     }
 
     /// Number of loads.
@@ -227,28 +207,25 @@ impl System {
         &self.chart_place
     }
 
-    fn terms(&self, terms: Terms) -> impl Iterator<Item = &dyn AnyTerm> {
-        let elastic: [&dyn AnyTerm; 8] = [
-            &self.stretch,
-            &self.bending,
-            &self.wrapping,
+    fn terms(&self) -> [&dyn AnyTerm; 9] {
+        [
+            &self.segments,
+            &self.bends,
+            &self.wraps,
             &self.stitch_length,
             &self.spacing,
-            &self.gravity,
+            &self.friction,
+            &self.obstacles,
             &self.loads,
             &self.bed,
-        ];
-        let dynamic: [&dyn AnyTerm; 6] =
-            [&self.inertia, &self.friction, &self.stretch_rate, &self.bend_rate, &self.wrap_rate, &self.obstacles];
-        let count = if terms == Terms::Dynamic { dynamic.len() } else { 0 };
-        elastic.into_iter().chain(dynamic.into_iter().take(count))
+        ]
     }
 
     /// Total energy \[J\].
-    pub fn energy(&self, terms: Terms, q: &[f64], work: &mut Workspace) -> f64 {
+    pub fn energy(&self, q: &[f64], work: &mut Workspace) -> f64 {
         work.prepare(&self.chunks);
         work.chunks.par_iter_mut().for_each(|work| {
-            work.energy = self.terms(terms).map(|term| term.chunk_energy(work.chunk, q)).sum();
+            work.energy = self.terms().iter().map(|term| term.chunk_energy(work.chunk, q)).sum();
         });
         work.chunks.iter().map(|work| work.energy).sum()
     }
@@ -257,37 +234,32 @@ impl System {
     pub fn energies(&self, q: &[f64], work: &mut Workspace) -> Vec<(&'static str, f64)> {
         work.prepare(&self.chunks);
         work.chunks.par_iter_mut().for_each(|work| {
-            for (k, term) in self.terms(Terms::Dynamic).enumerate() {
-                work.by_term[k] = term.chunk_energy(work.chunk, q);
+            work.by_kind.clear();
+            for term in self.terms() {
+                term.chunk_parts(work.chunk, q, &mut |kind, energy| add_to_kind(&mut work.by_kind, kind, energy));
             }
         });
-        let sum = |k: usize| work.chunks.iter().map(|work| work.by_term[k]).sum();
-        self.terms(Terms::Dynamic).enumerate().map(|(k, term)| (term.name(), sum(k))).collect()
+        let mut sums: Vec<_> = KINDS.iter().map(|&kind| (kind, 0.0)).collect();
+        for work in &work.chunks {
+            work.by_kind.iter().for_each(|&(kind, energy)| add_to_kind(&mut sums, kind, energy));
+        }
+        sums
     }
 
     /// Energy \[J\] and gradient.
-    pub fn gradient(&self, terms: Terms, q: &[f64], gradient: &mut [f64], work: &mut Workspace) -> f64 {
+    pub fn gradient(&self, q: &[f64], gradient: &mut [f64], work: &mut Workspace) -> f64 {
         work.prepare(&self.chunks);
         work.chunks.par_iter_mut().for_each(|work| {
             let rows = self.chunks.rows(work.chunk);
             work.gradient.fill(0.0);
             let mut out = ChunkOutput { rows, gradient: &mut work.gradient, matrix: None };
-            work.energy =
-                self.terms(terms).map(|term| term.accumulate(work.chunk, q, Linearisation::CONVEX, &mut out)).sum();
+            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }
 
-    /// Energy \[J\], gradient, and matrix of second derivatives.
-    pub fn linearise(
-        &self,
-        terms: Terms,
-        linearisation: Linearisation,
-        q: &[f64],
-        gradient: &mut [f64],
-        matrix: &mut BlockMatrix,
-        work: &mut Workspace,
-    ) -> f64 {
+    /// Energy \[J\], gradient, and a positive semi-definite matrix of second derivatives.
+    pub fn linearise(&self, q: &[f64], gradient: &mut [f64], matrix: &mut BlockMatrix, work: &mut Workspace) -> f64 {
         work.prepare(&self.chunks);
         matrix.for_each_row_chunk(self.chunks.bounds(), &mut work.chunks, |work, mut rows| {
             rows.clear();
@@ -297,7 +269,7 @@ impl System {
                 gradient: &mut work.gradient,
                 matrix: Some(&mut rows),
             };
-            work.energy = self.terms(terms).map(|term| term.accumulate(work.chunk, q, linearisation, &mut out)).sum();
+            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }
@@ -305,41 +277,32 @@ impl System {
     /// The longest part of a step along which no segment's rest length falls below a tenth of what it is.
     #[must_use]
     pub fn longest_step(&self, q: &[f64], direction: &[f64]) -> f64 {
-        self.stretch
-            .set
-            .stencils
-            .par_iter()
-            .with_min_len(4096)
-            .map(|stencil| {
-                let (a, b) = (stencil[3] as usize, stencil[7] as usize);
-                let rate = direction[b] - direction[a];
-                if rate < 0.0 { 0.9 * (q[b] - q[a]) / -rate } else { f64::INFINITY }
-            })
-            .reduce(|| f64::INFINITY, f64::min)
-            .min(1.0)
+        let shortest = |stencil: &[u32; 8]| {
+            let (a, b) = (stencil[3] as usize, stencil[7] as usize);
+            let rate = direction[b] - direction[a];
+            if rate < 0.0 { 0.9 * (q[b] - q[a]) / -rate } else { f64::INFINITY }
+        };
+        let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
+        segments.map(shortest).reduce(|| f64::INFINITY, f64::min).min(1.0)
     }
 
     /// Largest ratio of a segment's length to its rest length, and smallest rest length \[m\].
     #[must_use]
     pub fn extremes(&self, q: &[f64]) -> (f64, f64) {
-        self.stretch
-            .set
-            .stencils
-            .par_iter()
-            .with_min_len(4096)
-            .map(|stencil| {
-                let at = |k: usize| q[stencil[k] as usize];
-                let rest = at(7) - at(3);
-                let length = ((at(4) - at(0)).powi(2) + (at(5) - at(1)).powi(2) + (at(6) - at(2)).powi(2)).sqrt();
-                (length / rest, rest)
-            })
-            .reduce(|| (0.0, f64::INFINITY), |a, b| (a.0.max(b.0), a.1.min(b.1)))
+        let of = |stencil: &[u32; 8]| {
+            let at = |k: usize| q[stencil[k] as usize];
+            let rest = at(7) - at(3);
+            let length = ((at(4) - at(0)).powi(2) + (at(5) - at(1)).powi(2) + (at(6) - at(2)).powi(2)).sqrt();
+            (length / rest, rest)
+        };
+        let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
+        segments.map(of).reduce(|| (0.0, f64::INFINITY), |a, b| (a.0.max(b.0), a.1.min(b.1)))
     }
 
     /// Bytes held by terms and pattern.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        let terms: usize = self.terms(Terms::Dynamic).map(AnyTerm::bytes).sum();
+        let terms: usize = self.terms().iter().map(|term| term.bytes()).sum();
         terms + self.pattern.block_count() * 4 + self.compression.len() * 64
     }
 
@@ -347,6 +310,13 @@ impl System {
     #[must_use]
     pub fn yarn_at(&self, node: NodeId) -> f64 {
         self.yarn_at_node[node.index()]
+    }
+}
+
+fn add_to_kind(sums: &mut Vec<(&'static str, f64)>, kind: &'static str, energy: f64) {
+    match sums.iter_mut().find(|(name, _)| *name == kind) {
+        Some((_, sum)) => *sum += energy,
+        None => sums.push((kind, energy)),
     }
 }
 
@@ -358,7 +328,7 @@ impl Workspace {
                     chunk,
                     gradient: vec![0.0; BLOCK * chunks.rows(chunk).len()],
                     energy: 0.0,
-                    by_term: [0.0; MOST_TERMS],
+                    by_kind: Vec::with_capacity(KINDS.len()),
                 })
                 .collect();
         }

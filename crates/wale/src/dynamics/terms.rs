@@ -5,10 +5,11 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 use wale_numerics::block_matrix::RowChunk;
+use wale_numerics::block_pattern::BlockPattern;
 
 use crate::energy::Element;
 use crate::fabric::coordinates::{BLOCK, Dof};
-use crate::fabric::elements::{Elements, Linearisation};
+use crate::fabric::elements::Elements;
 
 /// Cuts of the block rows into chunks; decided by the fabric's size alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -17,15 +18,19 @@ pub struct Chunks {
 }
 
 /// Blocks a chunk has at least, but for the smallest fabrics.
-const SMALLEST_CHUNK: usize = 512;
-/// Most chunks: more would repeat more of the elements that straddle two.
+const SMALLEST_CHUNK: usize = 1024;
+/// Chunks up to the size at which each has [`LARGE_CHUNK`] blocks: more would repeat more of the elements that straddle
+/// two.
 const MOST_CHUNKS: usize = 16;
+/// Blocks of a chunk of a large fabric.
+const LARGE_CHUNK: usize = 8192;
 
 impl Chunks {
     /// Cuts `block_count` rows.
     #[must_use]
     pub fn new(block_count: usize) -> Self {
-        let count = (block_count / SMALLEST_CHUNK).clamp(1, MOST_CHUNKS);
+        let most = MOST_CHUNKS.max(block_count / LARGE_CHUNK);
+        let count = (block_count / SMALLEST_CHUNK).clamp(1, most);
         Self { bounds: (0..=count).map(|k| k * block_count / count).collect() }
     }
     /// First row of each chunk, and the number of rows.
@@ -67,13 +72,18 @@ pub struct Term<E, const N: usize> {
     pub set: Elements<E, N>,
     /// For each chunk the elements that touch it: its own first (those whose first block it holds), then others'.
     lists: Vec<(Vec<u32>, usize)>,
+    /// Where in the matrix the blocks of each element lie, row by row of the blocks it touches.
+    places: Vec<u32>,
+    /// First of the places of each element.
+    first_place: Vec<u32>,
 }
 
 impl<E: Element<N>, const N: usize> Term<E, N> {
     /// Plans a set.
     #[must_use]
     pub fn new(set: Elements<E, N>, chunks: &Chunks) -> Self {
-        let mut term = Self { set, lists: vec![(Vec::new(), 0); chunks.count()] };
+        let lists = vec![(Vec::new(), 0); chunks.count()];
+        let mut term = Self { set, lists, places: Vec::new(), first_place: Vec::new() };
         term.plan(chunks);
         term
     }
@@ -106,24 +116,45 @@ impl<E: Element<N>, const N: usize> Term<E, N> {
         }
     }
 
-    /// Elements that a chunk owns, for updates before a step.
-    pub fn update(&mut self, q: &[f64], update: impl Fn(usize, &mut E, &[f64; N]) + Sync) {
-        let stencils = &self.set.stencils;
-        self.set.elements.par_iter_mut().with_min_len(2048).enumerate().for_each(|(index, element)| {
-            let local = std::array::from_fn(|i| q[stencils[index][i] as usize]);
-            update(index, element, &local);
+    /// Finds the elements' blocks in the matrix, after [`Term::plan`].
+    ///
+    /// # Panics
+    /// If blocks that an element couples do not meet in the pattern.
+    pub fn locate(&mut self, pattern: &BlockPattern) {
+        self.places.clear();
+        self.first_place.clear();
+        for stencil in &self.set.stencils {
+            self.first_place.push(self.places.len() as u32);
+            let (runs, count) = runs(stencil);
+            for a in &runs[..count] {
+                for b in &runs[..count] {
+                    let place = pattern.position(a.block, b.block);
+                    self.places.push(place.expect("blocks that an element couples meet in the pattern") as u32);
+                }
+            }
+        }
+    }
+
+    /// Updates every element from its stencil and local coordinates, before a step.
+    pub fn update(&mut self, q: &[f64], update: impl Fn(&[Dof; N], &mut E, &[f64; N]) + Sync) {
+        self.set.elements.par_iter_mut().zip(&self.set.stencils).with_min_len(2048).for_each(|(element, stencil)| {
+            let local = std::array::from_fn(|i| q[stencil[i] as usize]);
+            update(stencil, element, &local);
         });
     }
 }
 
+/// Most parts of an element.
+const MOST_PARTS: usize = 4;
+
 /// A sum of elements of one kind, as the system sees it.
 pub trait AnyTerm: Send + Sync {
-    /// Name of the kind.
-    fn name(&self) -> &'static str;
+    /// Calls `visit` with the kinds and energies \[J\] of the elements that a chunk owns.
+    fn chunk_parts(&self, chunk: usize, q: &[f64], visit: &mut dyn FnMut(&'static str, f64));
     /// Energy of the elements that a chunk owns \[J\].
     fn chunk_energy(&self, chunk: usize, q: &[f64]) -> f64;
     /// Adds gradient and Hessian rows of every element that touches a chunk; returns the energy of those it owns.
-    fn accumulate(&self, chunk: usize, q: &[f64], linearisation: Linearisation, out: &mut ChunkOutput<'_, '_>) -> f64;
+    fn accumulate(&self, chunk: usize, q: &[f64], out: &mut ChunkOutput<'_, '_>) -> f64;
     /// Calls `pair` for every two blocks that an element couples.
     fn pairs(&self, pair: &mut dyn FnMut(u32, u32));
     /// Bytes that the term holds.
@@ -131,8 +162,21 @@ pub trait AnyTerm: Send + Sync {
 }
 
 impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
-    fn name(&self) -> &'static str {
-        E::NAME
+    fn chunk_parts(&self, chunk: usize, q: &[f64], visit: &mut dyn FnMut(&'static str, f64)) {
+        // Few kinds to an element: summed here, so that the virtual call is made once a kind.
+        let mut sums: [(&'static str, f64); MOST_PARTS] = [("", 0.0); MOST_PARTS];
+        let (list, own) = &self.lists[chunk];
+        for &index in &list[..*own] {
+            let index = index as usize;
+            let mut part = 0;
+            self.set.elements[index].parts(&self.set.local(index, q), &mut |name, energy| {
+                sums[part] = (name, sums[part].1 + energy);
+                part += 1;
+            });
+        }
+        for (name, energy) in sums.iter().filter(|(name, _)| !name.is_empty()) {
+            visit(name, *energy);
+        }
     }
 
     fn chunk_energy(&self, chunk: usize, q: &[f64]) -> f64 {
@@ -146,7 +190,7 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
             .sum()
     }
 
-    fn accumulate(&self, chunk: usize, q: &[f64], linearisation: Linearisation, out: &mut ChunkOutput<'_, '_>) -> f64 {
+    fn accumulate(&self, chunk: usize, q: &[f64], out: &mut ChunkOutput<'_, '_>) -> f64 {
         let (list, own) = &self.lists[chunk];
         let mut energy = 0.0;
         for (k, &index) in list.iter().enumerate() {
@@ -161,12 +205,10 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
                     value
                 }
                 Some(matrix) => {
-                    let local = match linearisation {
-                        Linearisation::Blended(convexity) => element.blended(&local_q, convexity),
-                        Linearisation::Exact => element.exact(&local_q),
-                    };
+                    let local = element.convex(&local_q);
                     scatter_gradient(stencil, &local.gradient, &out.rows, out.gradient);
-                    scatter_hessian(stencil, &local.hessian, &out.rows, matrix);
+                    let places = &self.places[self.first_place[index] as usize..];
+                    scatter_hessian(stencil, &local.hessian, &out.rows, places, matrix);
                     local.energy
                 }
             };
@@ -182,8 +224,8 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
             let (runs, count) = runs(stencil);
             for a in &runs[..count] {
                 for b in &runs[..count] {
-                    if a.0 < b.0 {
-                        pair(a.0 as u32, b.0 as u32);
+                    if a.block < b.block {
+                        pair(a.block as u32, b.block as u32);
                     }
                 }
             }
@@ -192,20 +234,32 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
 
     fn bytes(&self) -> usize {
         let lists: usize = self.lists.iter().map(|(list, _)| list.capacity() * size_of::<u32>()).sum();
-        lists + self.set.elements.capacity() * size_of::<E>() + self.set.stencils.capacity() * size_of::<[Dof; N]>()
+        let places = (self.places.capacity() + self.first_place.capacity()) * size_of::<u32>();
+        lists
+            + places
+            + self.set.elements.capacity() * size_of::<E>()
+            + self.set.stencils.capacity() * size_of::<[Dof; N]>()
     }
 }
 
-/// Stretches of a stencil that lie in one block: block, first local coordinate, one past the last.
-fn runs<const N: usize>(stencil: &[Dof; N]) -> ([(usize, usize, usize); N], usize) {
-    let mut runs = [(0, 0, 0); N];
+/// A stretch of a stencil that lies in one block.
+#[derive(Clone, Copy, Default)]
+struct Run {
+    block: usize,
+    /// First local coordinate, and one past the last.
+    start: usize,
+    end: usize,
+}
+
+fn runs<const N: usize>(stencil: &[Dof; N]) -> ([Run; N], usize) {
+    let mut runs = [Run::default(); N];
     let mut count = 0;
     for (i, &dof) in stencil.iter().enumerate() {
         let block = dof as usize / BLOCK;
-        if count > 0 && runs[count - 1].0 == block {
-            runs[count - 1].2 = i + 1;
+        if count > 0 && runs[count - 1].block == block {
+            runs[count - 1].end = i + 1;
         } else {
-            runs[count] = (block, i, i + 1);
+            runs[count] = Run { block, start: i, end: i + 1 };
             count += 1;
         }
     }
@@ -226,19 +280,33 @@ fn scatter_hessian<const N: usize>(
     stencil: &[Dof; N],
     local: &[[f64; N]; N],
     rows: &Range<usize>,
+    places: &[u32],
     matrix: &mut RowChunk<'_>,
 ) {
     let (runs, count) = runs(stencil);
-    for &(row, row_start, row_end) in &runs[..count] {
-        if !rows.contains(&row) {
+    let slots: [usize; N] = std::array::from_fn(|i| stencil[i] as usize % BLOCK);
+    for (a, row) in runs[..count].iter().enumerate() {
+        if !rows.contains(&row.block) {
             continue;
         }
-        for &(column, column_start, column_end) in &runs[..count] {
-            let block = matrix.block_mut(row, column);
-            for i in row_start..row_end {
-                let r = (stencil[i] as usize - row * BLOCK) * BLOCK;
-                for j in column_start..column_end {
-                    block[r + stencil[j] as usize - column * BLOCK] += local[i][j];
+        for (b, column) in runs[..count].iter().enumerate() {
+            let block = matrix.block_at(places[a * count + b] as usize).as_chunks_mut::<BLOCK>().0;
+            let (across, last) = (column.start, column.end - 1);
+            // Nearly always a whole position, with or without one arc length: short loops of known length.
+            let position = slots[across] == 0 && (column.end - across).abs_diff(3) <= 1 && column.end - across >= 3;
+            for i in row.start..row.end {
+                let (to, from) = (&mut block[slots[i]], &local[i]);
+                if position {
+                    for (to, from) in to[..3].iter_mut().zip(&from[across..across + 3]) {
+                        *to += from;
+                    }
+                    if last == across + 3 {
+                        to[slots[last]] += from[last];
+                    }
+                } else {
+                    for j in column.start..column.end {
+                        to[slots[j]] += from[j];
+                    }
                 }
             }
         }
@@ -270,17 +338,18 @@ mod tests {
         }
         let result = |bounds: Vec<usize>| {
             let chunks = Chunks { bounds };
-            let term = Term::new(set.clone(), &chunks);
+            let mut term = Term::new(set.clone(), &chunks);
             let mut pairs = Vec::new();
             term.pairs(&mut |a, b| pairs.push((a, b)));
             let mut matrix = BlockMatrix::zeros(Arc::new(BlockPattern::from_pairs(n as usize, pairs)));
+            term.locate(matrix.pattern());
             let mut gradient = vec![0.0; 5 * n as usize];
             let mut energy = 0.0;
             for (chunk, mut rows) in matrix.split_rows(chunks.bounds()).enumerate() {
                 let range = chunks.rows(chunk);
                 let (start, end) = (range.start * 5, range.end * 5);
                 let mut out = ChunkOutput { rows: range, gradient: &mut gradient[start..end], matrix: Some(&mut rows) };
-                energy += term.accumulate(chunk, &q, Linearisation::CONVEX, &mut out);
+                energy += term.accumulate(chunk, &q, &mut out);
             }
             let owned: f64 = (0..chunks.count()).map(|chunk| term.chunk_energy(chunk, &q)).sum();
             assert!((owned - energy).abs() < 1e-12 * energy);

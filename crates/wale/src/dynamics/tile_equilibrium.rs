@@ -4,7 +4,7 @@ use wale_numerics::dense::{DirectionKind, descent_direction};
 
 use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, dof};
-use crate::fabric::elements::{ElementSet, Elements, Linearisation};
+use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
 use crate::model::{FabricCard, Network, PassId, YarnCard, YarnId};
 
@@ -146,14 +146,14 @@ impl Problem {
     }
 
     /// Energy, gradient and full Hessian by the rows' unknowns.
-    fn linearise(&self, gradient: &mut [f64], hessian: &mut [f64], linearisation: Linearisation) -> f64 {
+    fn linearise(&self, gradient: &mut [f64], hessian: &mut [f64]) -> f64 {
         let n = self.rows.len();
         gradient.fill(0.0);
         hessian.fill(0.0);
         let mut energy = 0.0;
         let mut targets: Vec<(usize, usize, f64)> = Vec::new();
         for set in self.sets() {
-            energy += set.visit(&self.world, linearisation, &mut |stencil, slope, curvature| {
+            energy += set.visit(&self.world, &mut |stencil, slope, curvature| {
                 targets.clear();
                 for (i, &world) in stencil.iter().enumerate() {
                     for (unknown, factor) in self.coordinates.sources(world) {
@@ -200,7 +200,7 @@ impl Problem {
         let (mut iterations, mut residual) = (0, f64::INFINITY);
         while iterations <= settings.max_iterations {
             self.coordinates.place(&self.unknowns, &mut self.world);
-            energy = self.linearise(&mut gradient, &mut hessian, Linearisation::Exact);
+            energy = self.linearise(&mut gradient, &mut hessian);
             residual = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs())) / self.force;
             if residual <= settings.tolerance || iterations == settings.max_iterations {
                 break;

@@ -20,19 +20,46 @@ pub trait Element<const N: usize>: Copy + Send + Sync {
     /// Value, exact gradient, and a positive semi-definite Hessian that a descent method may use, in closed form.
     fn convex(&self, q: &[f64; N]) -> Local<N>;
 
-    /// Value, exact gradient, and a Hessian between the exact one (`convexity = 0`, up to terms too small to steer by)
-    /// and the convex one (`convexity = 1`), in closed form.
-    ///
-    /// The angles of bends and wraps rest far from where they are, so that what the convex Hessian drops is as large
-    /// as what it keeps, and Newton's method needs it to converge fast.
-    fn blended(&self, q: &[f64; N], _convexity: f64) -> Local<N> {
-        self.convex(q)
+    /// Adds what [`Element::convex`] gives to a sum of elements over the same coordinates.
+    fn add_convex(&self, q: &[f64; N], sum: &mut Local<N>) {
+        sum.add(&self.convex(q));
+    }
+
+    /// Calls `visit` with the name and energy \[J\] of every part.
+    fn parts(&self, q: &[f64; N], visit: &mut impl FnMut(&'static str, f64)) {
+        visit(Self::NAME, self.energy(q));
     }
 
     /// Value and gradient alone; the hot path of line searches.
     fn gradient(&self, q: &[f64; N]) -> (f64, [f64; N]) {
         let local = self.convex(q);
         (local.energy, local.gradient)
+    }
+}
+
+/// Two elements over the same coordinates are one: they are evaluated, and written into the matrix, together.
+impl<A: Element<N>, B: Element<N>, const N: usize> Element<N> for (A, B) {
+    const NAME: &'static str = A::NAME;
+
+    fn energy<T: Real>(&self, q: &[T; N]) -> T {
+        self.0.energy(q) + self.1.energy(q)
+    }
+    fn convex(&self, q: &[f64; N]) -> Local<N> {
+        let mut sum = self.0.convex(q);
+        self.1.add_convex(q, &mut sum);
+        sum
+    }
+    fn add_convex(&self, q: &[f64; N], sum: &mut Local<N>) {
+        self.0.add_convex(q, sum);
+        self.1.add_convex(q, sum);
+    }
+    fn gradient(&self, q: &[f64; N]) -> (f64, [f64; N]) {
+        let (a, b) = (self.0.gradient(q), self.1.gradient(q));
+        (a.0 + b.0, std::array::from_fn(|i| a.1[i] + b.1[i]))
+    }
+    fn parts(&self, q: &[f64; N], visit: &mut impl FnMut(&'static str, f64)) {
+        self.0.parts(q, visit);
+        self.1.parts(q, visit);
     }
 }
 
@@ -81,28 +108,6 @@ pub(crate) mod testing {
         }
         let smallest = relative_smallest_eigenvalue(&convex.hessian);
         assert!(smallest > -1e-10, "{} convex Hessian has eigenvalue {smallest:e}", E::NAME);
-    }
-
-    /// The blend's Hessian against the exact one at convexity zero and the convex one at one, and its gradient.
-    pub fn check_blend<E: Element<N>, const N: usize>(element: &E, q: &[f64; N], tolerance: f64) {
-        let (exact, convex) = (element.exact(q), element.convex(q));
-        let largest = exact.hessian.iter().flatten().fold(0.0f64, |m, h| m.max(h.abs()));
-        for (convexity, expected) in [(0.0, &exact.hessian), (1.0, &convex.hessian)] {
-            let blended = element.blended(q, convexity);
-            for i in 0..N {
-                assert!((blended.gradient[i] - convex.gradient[i]).abs() <= 1e-12 * largest);
-                for j in 0..N {
-                    let difference = (blended.hessian[i][j] - expected[i][j]).abs();
-                    assert!(
-                        difference <= tolerance * largest,
-                        "{} {i} {j} at {convexity}: {} {}",
-                        E::NAME,
-                        blended.hessian[i][j],
-                        expected[i][j]
-                    );
-                }
-            }
-        }
     }
 
     /// A deterministic stream of numbers in `[−1, 1)`.

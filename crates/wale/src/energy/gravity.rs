@@ -28,15 +28,20 @@ impl Element<8> for Gravity {
     }
 
     fn convex(&self, q: &[f64; 8]) -> Local<8> {
+        let (energy, gradient) = self.gradient(q);
+        Local { energy, gradient, hessian: [[0.0; 8]; 8] }
+    }
+
+    fn add_convex(&self, q: &[f64; 8], sum: &mut Local<8>) {
+        sum.add_gradient(self.gradient(q));
+    }
+
+    fn gradient(&self, q: &[f64; 8]) -> (f64, [f64; 8]) {
         let rest = q[7] - q[3];
         let height: f64 = (0..3).map(|k| self.weight[k] * (q[k] + q[4 + k])).sum();
         let w = self.weight.map(|w| -0.5 * rest * w);
         let by_rest = -0.5 * height;
-        Local {
-            energy: -0.5 * rest * height,
-            gradient: [w[0], w[1], w[2], -by_rest, w[0], w[1], w[2], by_rest],
-            hessian: [[0.0; 8]; 8],
-        }
+        (-0.5 * rest * height, [w[0], w[1], w[2], -by_rest, w[0], w[1], w[2], by_rest])
     }
 }
 

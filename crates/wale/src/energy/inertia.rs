@@ -51,21 +51,25 @@ impl Element<8> for Inertia {
     }
 
     fn convex(&self, q: &[f64; 8]) -> Local<8> {
-        let (energy, gradient) = self.gradient(q);
-        let mut local = Local { energy, gradient, hessian: [[0.0; 8]; 8] };
+        let mut local = Local::zero();
+        self.add_convex(q, &mut local);
+        local
+    }
+
+    fn add_convex(&self, q: &[f64; 8], sum: &mut Local<8>) {
+        sum.add_gradient(self.gradient(q));
         let w = self.direction;
         let w2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];
         for (row, column, weight) in [(0, 0, 2.0), (0, 4, 1.0), (4, 0, 1.0), (4, 4, 2.0)] {
             let f = self.factor * weight;
             for k in 0..3 {
-                local.hessian[row + k][column + k] = f;
-                local.hessian[row + k][column + 3] = -f * w[k];
-                local.hessian[row + 3][column + k] = -f * w[k];
+                sum.hessian[row + k][column + k] += f;
+                sum.hessian[row + k][column + 3] -= f * w[k];
+                sum.hessian[row + 3][column + k] -= f * w[k];
             }
             let extra = if row == column { 3.0 * SLIDING_REGULARISATION * self.factor } else { 0.0 };
-            local.hessian[row + 3][column + 3] = f * w2 + extra;
+            sum.hessian[row + 3][column + 3] += f * w2 + extra;
         }
-        local
     }
 
     fn gradient(&self, q: &[f64; 8]) -> (f64, [f64; 8]) {

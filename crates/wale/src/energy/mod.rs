@@ -22,7 +22,7 @@ pub use gravity::Gravity;
 pub use inertia::Inertia;
 pub use load::Load;
 pub use obstacle_contact::ObstacleContact;
-pub use rates::{BendRate, StretchRate, WrapRate};
+pub use rates::Rate;
 pub use spacing::Spacing;
 pub use stitch_length::StitchLength;
 pub use stretch::Stretch;

@@ -64,27 +64,6 @@ impl Element<8> for Stretch {
         local
     }
 
-    fn blended(&self, q: &[f64; 8], convexity: f64) -> Local<8> {
-        let mut local = self.convex(q);
-        let d = sub(point(q, 4), point(q, 0));
-        let length = dot(d, d).sqrt();
-        let tension = self.stiffness * (length / (q[7] - q[3]) - 1.0);
-        if tension < 0.0 && length > 0.0 {
-            let side = (1.0 - convexity) * tension / length;
-            let t = d.map(|x| x / length);
-            for i in 0..3 {
-                for j in 0..3 {
-                    let value = side * (f64::from(u8::from(i == j)) - t[i] * t[j]);
-                    local.hessian[i][j] += value;
-                    local.hessian[4 + i][4 + j] += value;
-                    local.hessian[i][4 + j] -= value;
-                    local.hessian[4 + i][j] -= value;
-                }
-            }
-        }
-        local
-    }
-
     fn gradient(&self, q: &[f64; 8]) -> (f64, [f64; 8]) {
         let d = sub(point(q, 4), point(q, 0));
         let rest = q[7] - q[3];
@@ -102,7 +81,7 @@ impl Element<8> for Stretch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::element::testing::{Random, check, check_blend, random_yarn};
+    use super::super::element::testing::{Random, check, random_yarn};
     use super::*;
 
     #[test]
@@ -111,7 +90,6 @@ mod tests {
         for _ in 0..20 {
             let q = random_yarn::<2, 8>(&mut random);
             check(&Stretch { stiffness: 3.0 }, &q, 1.0);
-            check_blend(&Stretch { stiffness: 3.0 }, &q, 1e-10);
         }
     }
 

@@ -26,6 +26,10 @@ impl<E: Element<N>, const N: usize> Elements<E, N> {
         self.elements.push(element);
         self.stencils.push(stencil);
     }
+    /// The same places with other elements.
+    pub fn map<F>(self, element: impl FnMut(E) -> F) -> Elements<F, N> {
+        Elements { elements: self.elements.into_iter().map(element).collect(), stencils: self.stencils }
+    }
     /// Number of elements.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -49,20 +53,6 @@ impl<E: Element<N>, const N: usize> Elements<E, N> {
     }
 }
 
-/// Which Hessian a linearisation uses.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Linearisation {
-    /// Exact by automatic differentiation, indefinite far from equilibrium.
-    Exact,
-    /// In closed form, from nearly exact (0) to positive semi-definite element by element (1).
-    Blended(f64),
-}
-
-impl Linearisation {
-    /// Positive semi-definite, element by element.
-    pub const CONVEX: Self = Self::Blended(1.0);
-}
-
 /// What is done with each element: its stencil, gradient, and Hessian by row and column.
 pub type Visit<'a> = dyn FnMut(&[Dof], &[f64], &dyn Fn(usize, usize) -> f64) + 'a;
 
@@ -72,8 +62,8 @@ pub trait ElementSet {
     fn name(&self) -> &'static str;
     /// Sum of the energies \[J\].
     fn total(&self, q: &[f64]) -> f64;
-    /// Calls `visit(stencil, gradient, Hessian rows)` for every element, in order, and returns the energy \[J\].
-    fn visit(&self, q: &[f64], linearisation: Linearisation, visit: &mut Visit<'_>) -> f64;
+    /// Calls `visit(stencil, gradient, exact Hessian)` for every element, in order, and returns the energy \[J\].
+    fn visit(&self, q: &[f64], visit: &mut Visit<'_>) -> f64;
     /// Calls `visit(stencil, gradient)` for every element and returns the energy \[J\].
     fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64;
 }
@@ -85,14 +75,11 @@ impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
     fn total(&self, q: &[f64]) -> f64 {
         self.energy(q)
     }
-    fn visit(&self, q: &[f64], linearisation: Linearisation, visit: &mut Visit<'_>) -> f64 {
+    fn visit(&self, q: &[f64], visit: &mut Visit<'_>) -> f64 {
         let mut energy = 0.0;
         for (index, element) in self.elements.iter().enumerate() {
             let q = self.local(index, q);
-            let local: Local<N> = match linearisation {
-                Linearisation::Exact => element.exact(&q),
-                Linearisation::Blended(convexity) => element.blended(&q, convexity),
-            };
+            let local: Local<N> = element.exact(&q);
             energy += local.energy;
             visit(&self.stencils[index], &local.gradient, &|i, j| local.hessian[i][j]);
         }

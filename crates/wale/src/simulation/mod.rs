@@ -77,8 +77,8 @@ pub struct SimulationError {
 
 /// Newton iterations, as a share of the most allowed, below which the next step is longer.
 const EASY: f64 = 0.34;
-/// A step that ends this many times short of the tolerance is taken again, shorter.
-const FAR_FROM_CONVERGED: f64 = 100.0;
+/// A step whose last iteration still moved a node this far is taken again, shorter \[yarn radii\].
+const FAR_FROM_CONVERGED: f64 = 1.0;
 
 impl Simulation {
     /// Sets up a fabric at rest where its plan places it.
@@ -229,13 +229,12 @@ impl Simulation {
         let newton = NewtonSettings {
             max_iterations: settings.newton_iterations as usize,
             tolerance: settings.newton_tolerance * self.system.yarn.radius,
-            convexity: 1.0,
         };
         let (obstacles, touches) = (&self.plan.obstacles, &self.touches);
         let report = self.newton.minimise(&mut self.system, &mut self.q, &newton, |system, q| {
             system.renew_touches(obstacles, q, end, touches);
         })?;
-        if !report.converged && report.last_move > FAR_FROM_CONVERGED * newton.tolerance {
+        if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.yarn.radius {
             return Err(StepError::NotConverged { last_move: report.last_move });
         }
         Ok(report)

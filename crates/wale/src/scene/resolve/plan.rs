@@ -27,7 +27,7 @@ pub(super) fn simulation(text: &SimulationText) -> Result<Simulation, Complaint>
         largest_step: si(text.largest_step).unwrap_or(5e-3),
         smallest_step: si(text.smallest_step).unwrap_or(1e-6),
         newton_iterations: text.newton_iterations.unwrap_or(15),
-        newton_tolerance: si(text.newton_tolerance).unwrap_or(0.01),
+        newton_tolerance: si(text.newton_tolerance).unwrap_or(0.005),
         linear_solver: text.linear_solver.unwrap_or_default(),
         linear_tolerance: si(text.linear_tolerance).unwrap_or(0.1),
         threads: text.threads.map(|threads| threads as usize),
