@@ -1,6 +1,9 @@
-//! Contact: how hard stacked yarns press on each other, and where a point lies against a rigid obstacle.
+//! Contact: how hard stacked yarns press on each other, where a point lies against a rigid obstacle, and which parts of a
+//! fabric have come near each other.
 
 pub mod compression;
+pub mod nearby;
 pub mod surface;
 
 pub use compression::Compression;
+pub use nearby::Nearby;

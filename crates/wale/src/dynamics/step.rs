@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::state::State;
 use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
-use crate::energy::{Inertia, ObstacleContact, Rate};
+use crate::energy::{Inertia, ObstacleContact, Rate, SelfContact};
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::model::Obstacle;
 
@@ -25,6 +25,11 @@ pub struct Touch {
 const WATCH: f64 = 2.0;
 /// Depth at which an obstacle carries a thousand times the weight of the node's yarn under gravity, in yarn radii.
 const PENALTY_DEPTH: f64 = 1.0;
+/// Distance of two layers of fabric that lie on each other, in yarn radii: each is two yarns thick where they cross, and
+/// crossings come to lie in the gaps of the other layer.
+const LAYERS: f64 = 3.0;
+/// Nodes nearer than so many loops in the layout hold their distance by being knitted together.
+const KNITTED_TOGETHER: f64 = 2.5;
 /// Slip over which friction with an obstacle builds up, in yarn radii.
 const SLIP: f64 = 0.02;
 
@@ -124,6 +129,36 @@ impl System {
                 element.limit = obstacle.friction_coefficient * stiffness * depth;
                 element.anchor_stiffness = (element.limit / (SLIP * radius)).max(1e-3 * stiffness);
             }
+        }
+    }
+
+    /// Finds the nodes that may meet others of the same fabric during a step of length `h`.
+    pub(crate) fn find_self_contacts(&mut self, state: &State, h: f64) {
+        let radius = self.yarn.radius;
+        let distance = LAYERS * radius;
+        let fastest = (0..self.coordinates.node_count())
+            .into_par_iter()
+            .with_min_len(4096)
+            .map(|node| DVec3::from_slice(&state.velocities[BLOCK * node..]).length_squared())
+            .reduce(|| 0.0, f64::max)
+            .sqrt();
+        // Two nodes close in by twice the fastest; a longer reach would find everything near everything.
+        let reach = distance + (2.0 * h * fastest).clamp(0.5 * radius, distance);
+        let apart = KNITTED_TOGETHER * self.card.wale_spacing.max(self.card.course_spacing);
+        let (coordinates, q) = (&self.coordinates, &state.coordinates);
+        let pairs = self.nearby.find(|node| coordinates.position_of(node, q), &self.layout, reach, apart);
+        let had = !self.self_contacts.set.is_empty();
+        self.self_contacts.set.elements.clear();
+        self.self_contacts.set.stencils.clear();
+        for pair in pairs {
+            let mass = self.yarn.linear_density * pair.iter().map(|&node| self.yarn_at_node[node as usize]).sum::<f64>();
+            let stiffness = 1e3 * mass * 9.81 / (PENALTY_DEPTH * radius);
+            let [a, b] = pair.map(|node| dof(BLOCK * node as usize));
+            self.self_contacts.set.push(SelfContact { stiffness, distance }, [a, a + 1, a + 2, b, b + 1, b + 2]);
+        }
+        if had || !pairs.is_empty() {
+            self.self_contacts.plan(&self.chunks);
+            self.self_contacts.locate(&self.pattern);
         }
     }
 

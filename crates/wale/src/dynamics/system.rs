@@ -8,9 +8,9 @@ use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::block_pattern::BlockPattern;
 
 use super::terms::{AnyTerm, ChunkOutput, Chunks, Term};
-use crate::contact::Compression;
+use crate::contact::{Compression, Nearby};
 use crate::energy::{
-    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, Spacing, StitchLength,
+    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing, StitchLength,
     Stretch, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
@@ -36,6 +36,7 @@ pub struct System {
     pub(super) spacing: Term<Spacing, 2>,
     pub(super) friction: Term<AnchoredSpring, 1>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
+    pub(super) self_contacts: Term<SelfContact, 6>,
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
     pub(super) compression: Compression,
@@ -43,6 +44,9 @@ pub struct System {
     pub(super) rubbing: Vec<(PassId, usize)>,
     /// Rest length of yarn that belongs to each node in the initial layout \[m\].
     pub(super) yarn_at_node: Vec<f64>,
+    /// Where the nodes lie in the layout \[m\], and who has come near whom since.
+    pub(super) layout: Vec<DVec3>,
+    pub(super) nearby: Nearby,
     /// Planar places of blocks for a coarse space: columns and rows of the chart.
     pub(super) chart_place: Vec<[f64; 2]>,
 }
@@ -62,7 +66,7 @@ struct ChunkWork {
 }
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 12] = [
+const KINDS: [&str; 13] = [
     Stretch::NAME,
     Bending::NAME,
     Wrapping::NAME,
@@ -75,6 +79,7 @@ const KINDS: [&str; 12] = [
     AnchoredSpring::NAME,
     Rate::NAME,
     ObstacleContact::NAME,
+    SelfContact::NAME,
 ];
 
 impl System {
@@ -122,6 +127,9 @@ impl System {
             spacing: Term::new(mechanics.spacing, &chunks),
             friction: Term::new(friction, &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
+            self_contacts: Term::new(Elements::default(), &chunks),
+            nearby: Nearby::default(),
+            layout: network.position.clone(),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
             compression,
@@ -207,7 +215,7 @@ impl System {
         &self.chart_place
     }
 
-    fn terms(&self) -> [&dyn AnyTerm; 9] {
+    fn terms(&self) -> [&dyn AnyTerm; 10] {
         [
             &self.segments,
             &self.bends,
@@ -216,6 +224,7 @@ impl System {
             &self.spacing,
             &self.friction,
             &self.obstacles,
+            &self.self_contacts,
             &self.loads,
             &self.bed,
         ]

@@ -65,6 +65,9 @@ pub struct ChunkOutput<'a, 'm> {
     pub matrix: Option<&'a mut RowChunk<'m>>,
 }
 
+/// Place of a block that an element leaves zero.
+const NOWHERE: u32 = u32::MAX;
+
 /// Elements of one kind with the plan of who evaluates them.
 #[derive(Clone, Debug, Default)]
 pub struct Term<E, const N: usize> {
@@ -128,8 +131,13 @@ impl<E: Element<N>, const N: usize> Term<E, N> {
             let (runs, count) = runs(stencil);
             for a in &runs[..count] {
                 for b in &runs[..count] {
-                    let place = pattern.position(a.block, b.block);
-                    self.places.push(place.expect("blocks that an element couples meet in the pattern") as u32);
+                    let place = if E::COUPLES || a.block == b.block {
+                        let place = pattern.position(a.block, b.block);
+                        place.expect("blocks that an element couples meet in the pattern") as u32
+                    } else {
+                        NOWHERE
+                    };
+                    self.places.push(place);
                 }
             }
         }
@@ -220,6 +228,9 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
     }
 
     fn pairs(&self, pair: &mut dyn FnMut(u32, u32)) {
+        if !E::COUPLES {
+            return;
+        }
         for stencil in &self.set.stencils {
             let (runs, count) = runs(stencil);
             for a in &runs[..count] {
@@ -290,7 +301,11 @@ fn scatter_hessian<const N: usize>(
             continue;
         }
         for (b, column) in runs[..count].iter().enumerate() {
-            let block = matrix.block_at(places[a * count + b] as usize).as_chunks_mut::<BLOCK>().0;
+            let place = places[a * count + b];
+            if place == NOWHERE {
+                continue;
+            }
+            let block = matrix.block_at(place as usize).as_chunks_mut::<BLOCK>().0;
             let (across, last) = (column.start, column.end - 1);
             // Nearly always a whole position, with or without one arc length: short loops of known length.
             let position = slots[across] == 0 && (column.end - across).abs_diff(3) <= 1 && column.end - across >= 3;

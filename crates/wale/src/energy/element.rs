@@ -7,6 +7,8 @@ use wale_numerics::jet::{Jet, Real};
 pub trait Element<const N: usize>: Copy + Send + Sync {
     /// Name in logs and metrics.
     const NAME: &'static str;
+    /// Whether the Hessian couples nodes; one that does not needs no blocks off the diagonal.
+    const COUPLES: bool = true;
 
     /// The energy \[J\]: the definition, written once, over any scalar.
     fn energy<T: Real>(&self, q: &[T; N]) -> T;

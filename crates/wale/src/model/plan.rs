@@ -59,6 +59,8 @@ pub struct Simulation {
     pub rest_shape_compensation: bool,
     /// Whether yarns rub on each other while they slide.
     pub friction: bool,
+    /// Whether parts of the fabric that are not knitted together keep out of each other.
+    pub self_contact: bool,
     /// Seed of the small disturbance of the initial layout; the same seed gives the same run.
     pub seed: u64,
     /// Longest time step \[s\].
@@ -67,7 +69,8 @@ pub struct Simulation {
     pub smallest_step: f64,
     /// Most Newton iterations of a time step.
     pub newton_iterations: u32,
-    /// Newton stops when no node moves further than this in an iteration, as a fraction of the yarn radius \[–\].
+    /// Newton stops when nodes are expected to move no further than this, root mean square, as a fraction of the yarn
+    /// radius \[–\].
     pub newton_tolerance: f64,
     /// Which linear solver.
     pub linear_solver: LinearSolver,

@@ -126,6 +126,7 @@ fn simulation(scene: &Scene) -> Written<SimulationText> {
         relax_first: Some(settings.relax_first),
         rest_shape_compensation: Some(settings.rest_shape_compensation),
         friction: Some(settings.friction),
+        self_contact: Some(settings.self_contact),
         seed: Some(narrow("seed", settings.seed)?),
         largest_step: some(settings.largest_step)?,
         smallest_step: some(settings.smallest_step)?,

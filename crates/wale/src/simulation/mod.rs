@@ -214,6 +214,9 @@ impl Simulation {
         let settings = &self.plan.simulation;
         self.system.begin_step(&self.state, h, settings.friction, &mut self.compression);
         self.system.find_touches(&self.plan.obstacles, &self.state, h, &mut self.touches);
+        if settings.self_contact {
+            self.system.find_self_contacts(&self.state, h);
+        }
         self.free.copy_from_slice(self.system.coordinates.free());
         // Start where the velocities lead, as far as the order of the nodes along the yarns allows.
         self.q.copy_from_slice(&self.state.velocities);

@@ -39,6 +39,9 @@ pub struct SimulationText {
     /// Whether yarns rub on each other; true if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<bool>,
+    /// Whether parts of the fabric that are not knitted together keep out of each other; true if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub self_contact: Option<bool>,
     /// Seed of the small disturbance of the initial layout; 1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u32>,
@@ -48,10 +51,11 @@ pub struct SimulationText {
     /// Shortest time step, below which the run ends as not converged; 1 µs if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smallest_step: Option<Quantity<Time, Positive>>,
-    /// Most Newton iterations of a step; 12 if left out.
+    /// Most Newton iterations of a step; 15 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton_iterations: Option<u32>,
-    /// Newton stops when no node moves further in an iteration, as a part of the yarn radius; 0.01 if left out.
+    /// Newton stops when nodes are expected to move no further, root mean square, as a part of the yarn radius; 0.005 if
+    /// left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub newton_tolerance: Option<Quantity<Ratio, Positive>>,
     /// Linear solver: "automatic", "cholesky" or "conjugate_gradient"; automatic if left out.
