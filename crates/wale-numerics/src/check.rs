@@ -21,10 +21,16 @@ impl<const N: usize> Local<N> {
     /// Adds another sum.
     #[inline]
     pub fn add(&mut self, other: &Self) {
-        self.add_gradient((other.energy, other.gradient));
+        self.add_scaled(1.0, other);
+    }
+
+    /// Adds `factor` times another sum.
+    #[inline]
+    pub fn add_scaled(&mut self, factor: f64, other: &Self) {
+        self.add_gradient((factor * other.energy, other.gradient.map(|g| factor * g)));
         for (row, other) in self.hessian.iter_mut().zip(&other.hessian) {
             for (h, o) in row.iter_mut().zip(other) {
-                *h += o;
+                *h += factor * o;
             }
         }
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 
-use super::linear::{Linear, LinearReport, LinearSettings};
+use super::linear::{Coupling, Linear, LinearReport, LinearSettings};
 use super::system::{System, Workspace};
 use crate::fabric::coordinates::BLOCK;
 
@@ -54,12 +54,17 @@ pub enum StepError {
 
 /// How much further than the root mean square a single node may move in the last iteration.
 const SINGLE_NODE: f64 = 10.0;
+/// Convexity of a step's first matrix: a tenth of the convex one makes most of them positive definite.
+const FIRST_CONVEXITY: f64 = 0.1;
+/// Convexity below which the exact matrix is tried.
+const LEAST_CONVEXITY: f64 = 0.05;
 /// Most halvings of a step that does not lower the energy.
 const MOST_HALVINGS: usize = 30;
 
 /// Memory that Newton's method keeps between steps.
 pub struct Newton {
     matrix: BlockMatrix,
+    couplings: Vec<Coupling>,
     gradient: Vec<f64>,
     direction: Vec<f64>,
     trial: Vec<f64>,
@@ -67,6 +72,8 @@ pub struct Newton {
     free: Vec<bool>,
     linear: Linear,
     linear_settings: LinearSettings,
+    /// Convexity of the next matrix.
+    convexity: f64,
     /// Scratch of sums.
     pub work: Workspace,
 }
@@ -78,12 +85,14 @@ impl Newton {
         let n = system.coordinates.len();
         Self {
             matrix: BlockMatrix::zeros(system.pattern().clone()),
+            couplings: Vec::new(),
             gradient: vec![0.0; n],
             direction: vec![0.0; n],
             trial: vec![0.0; n],
             free: system.coordinates.free().to_vec(),
             linear: Linear::None,
             linear_settings,
+            convexity: FIRST_CONVEXITY,
             work: Workspace::default(),
         }
     }
@@ -116,10 +125,13 @@ impl Newton {
     ) -> Result<NewtonReport, StepError> {
         let mut report = NewtonReport { last_move: f64::INFINITY, ..NewtonReport::default() };
         let mut previous = 0.0;
+        // Every step starts alike, whatever came before: a resumed run must find the same bits.
+        self.convexity = FIRST_CONVEXITY;
         renew(system, q);
         let mut energy = self.linearise(system, q)?;
         while report.iterations < settings.max_iterations {
-            report.linear_iterations += self.solve(system)?.iterations;
+            let solved = self.solve(system, q)?;
+            report.linear_iterations += solved.iterations;
             report.iterations += 1;
             let slope: f64 = self.direction.iter().zip(&self.gradient).map(|(d, g)| d * g).sum();
             if !slope.is_finite() {
@@ -127,11 +139,14 @@ impl Newton {
             }
             let mut length = system.longest_step(q, &self.direction);
             let (mean, largest) = moves(&self.direction, system.coordinates.node_count());
-            // What is left after this move shrinks as fast as the moves do [Hairer1996, section IV.8].
-            let ratio = if length < 1.0 { 1.0 } else { mean / previous };
-            let left = if ratio < 0.5 { ratio / (1.0 - ratio) } else { 1.0 };
+            // What is left after this move shrinks as fast as the moves do [Hairer1996, section IV.8], and is not less
+            // than what the linear solve left.
+            let whole = length == 1.0 && !solved.negative_curvature;
+            let ratio = if whole { mean / previous } else { 1.0 };
+            let left = if ratio < 0.5 { (ratio / (1.0 - ratio)).max(self.linear_settings.tolerance) } else { 1.0 };
             previous = mean;
-            if left * mean <= settings.tolerance && left * largest <= SINGLE_NODE * settings.tolerance {
+            if !solved.negative_curvature
+                && left * mean <= settings.tolerance && left * largest <= SINGLE_NODE * settings.tolerance {
                 self.try_length(q, length);
                 q.copy_from_slice(&self.trial);
                 report.last_move = length * largest;
@@ -163,6 +178,7 @@ impl Newton {
                     }
                 }
                 report.backtracks += shorter;
+                self.more_convex();
                 let trial = std::mem::take(&mut self.trial);
                 new = self.linearise(system, &trial);
                 self.trial = trial;
@@ -176,21 +192,43 @@ impl Newton {
 
     /// Gradient and matrix at `q`; returns the energy.
     fn linearise(&mut self, system: &System, q: &[f64]) -> Result<f64, StepError> {
-        let energy = system.linearise(q, &mut self.gradient, &mut self.matrix, &mut self.work);
+        let energy = system.linearise(q, self.convexity, &mut self.gradient, &mut self.matrix, &mut self.work);
+        system.active_self_contacts(q, &self.free, &mut self.couplings);
         if energy.is_finite() { Ok(energy) } else { Err(StepError::NotFinite) }
     }
 
-    /// Finds the search direction from gradient and matrix.
-    fn solve(&mut self, system: &System) -> Result<LinearReport, StepError> {
+    /// Finds the search direction from gradient and matrix at `q`: of the exact matrix where it is positive definite, else
+    /// of one more convex.
+    fn solve(&mut self, system: &System, q: &[f64]) -> Result<LinearReport, StepError> {
         let failed = |error: super::linear::LinearError| StepError::Linear(error.to_string());
         if matches!(self.linear, Linear::None) {
             self.linear = Linear::new(system, &self.free, self.linear_settings).map_err(failed)?;
         }
-        for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
-            *d = if *free { -g } else { 0.0 };
+        loop {
+            for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
+                *d = if *free { -g } else { 0.0 };
+            }
+            self.matrix.fix_slots(&self.free, 1.0);
+            match self.linear.solve(&self.matrix, &self.couplings, &mut self.direction) {
+                Ok(report) if report.negative_curvature => {
+                    self.more_convex();
+                    return Ok(report);
+                }
+                Ok(report) => {
+                    self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
+                    return Ok(report);
+                }
+                Err(error) if self.convexity >= 1.0 => return Err(failed(error)),
+                Err(_) => {
+                    self.more_convex();
+                    self.linearise(system, q)?;
+                }
+            }
         }
-        self.matrix.fix_slots(&self.free, 1.0);
-        self.linear.solve(&self.matrix, &mut self.direction).map_err(failed)
+    }
+
+    fn more_convex(&mut self) {
+        self.convexity = (4.0 * self.convexity).clamp(FIRST_CONVEXITY, 1.0);
     }
 
     /// Sets the trial to `q` and a part of the direction.

@@ -3,7 +3,7 @@
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::coarse_space::CoarseSpace;
-use wale_numerics::conjugate_gradient::{ConjugateGradient, ConjugateGradientEnd, ConjugateGradientSettings};
+use wale_numerics::conjugate_gradient::{ConjugateGradient, LinearOperator, ConjugateGradientEnd, ConjugateGradientSettings};
 use wale_numerics::incomplete_cholesky::{IncompleteCholesky, IncompleteCholeskySettings};
 use wale_numerics::preconditioner::Additive;
 use wale_numerics::prolongation::Prolongation;
@@ -17,6 +17,8 @@ use crate::model::LinearSolver;
 pub struct LinearReport {
     /// Iterations of conjugate gradients; zero for a direct solve.
     pub iterations: usize,
+    /// Whether they met a direction of negative curvature and stopped there: what they found goes downhill still.
+    pub negative_curvature: bool,
 }
 
 /// Why a linear system could not be solved.
@@ -28,6 +30,41 @@ pub enum LinearError {
     /// Conjugate gradients or their preconditioner met a direction of negative curvature.
     #[error("conjugate gradients met negative curvature")]
     NegativeCurvature,
+}
+
+/// Two nodes in contact: the matrix has twice its stiffness on both diagonal blocks and none between them
+/// ([`crate::energy::SelfContact`]); conjugate gradients see the true one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coupling {
+    /// First slots of the nodes.
+    pub slots: [u32; 2],
+    /// `√k n` by node, zero along slots that are not free.
+    pub directions: [[f64; 3]; 2],
+}
+
+/// The matrix with the true stiffness of contacts.
+struct Coupled<'a> {
+    matrix: &'a BlockMatrix,
+    couplings: &'a [Coupling],
+}
+
+impl LinearOperator for Coupled<'_> {
+    fn dimension(&self) -> usize {
+        self.matrix.dimension()
+    }
+    fn apply(&self, x: &[f64], out: &mut [f64]) {
+        self.matrix.apply(x, out);
+        // (δ₂ − δ₁)² is what 2δ₁² + 2δ₂² is less (δ₁ + δ₂)².
+        for Coupling { slots, directions } in self.couplings {
+            let [a, b] = slots.map(|slot| slot as usize);
+            let [n, m] = directions;
+            let sum: f64 = (0..3).map(|k| n[k] * x[a + k] + m[k] * x[b + k]).sum();
+            for k in 0..3 {
+                out[a + k] -= n[k] * sum;
+                out[b + k] -= m[k] * sum;
+            }
+        }
+    }
 }
 
 /// Which solver, and how exact.
@@ -113,11 +150,12 @@ impl Linear {
         }
     }
 
-    /// Solves `A x = b`; `x` holds `b` on entry, zero in fixed slots, which were taken out of the matrix.
+    /// Solves `A x = b`; `x` holds `b` on entry, zero in fixed slots, which were taken out of the matrix. Contacts are
+    /// coupled by conjugate gradients; factors take the matrix as it is, which bounds them.
     ///
     /// # Errors
     /// If the matrix is not positive definite or not finite.
-    pub fn solve(&mut self, matrix: &BlockMatrix, x: &mut [f64]) -> Result<LinearReport, LinearError> {
+    pub fn solve(&mut self, matrix: &BlockMatrix, couplings: &[Coupling], x: &mut [f64]) -> Result<LinearReport, LinearError> {
         match self {
             Self::None => Err(LinearError::NegativeCurvature),
             Self::Cholesky(factor) => {
@@ -133,16 +171,20 @@ impl Linear {
                 iterative.right_side.copy_from_slice(x);
                 x.fill(0.0);
                 let report = iterative.gradient.solve(
-                    matrix,
+                    &Coupled { matrix, couplings },
                     &mut iterative.preconditioner,
                     &iterative.right_side,
                     x,
                     None,
                     &iterative.settings,
                 );
+                let iterations = report.iterations;
                 match report.end {
                     ConjugateGradientEnd::Converged | ConjugateGradientEnd::IterationLimit => {
-                        Ok(LinearReport { iterations: report.iterations })
+                        Ok(LinearReport { iterations, negative_curvature: false })
+                    }
+                    ConjugateGradientEnd::NegativeCurvature if iterations > 1 => {
+                        Ok(LinearReport { iterations, negative_curvature: true })
                     }
                     ConjugateGradientEnd::NegativeCurvature | ConjugateGradientEnd::Breakdown => {
                         Err(LinearError::NegativeCurvature)

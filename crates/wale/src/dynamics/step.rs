@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::linear::Coupling;
 use super::state::State;
 use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
@@ -159,6 +160,23 @@ impl System {
         if had || !pairs.is_empty() {
             self.self_contacts.plan(&self.chunks);
             self.self_contacts.locate(&self.pattern);
+        }
+    }
+
+    /// The contacts that are closed at `q`, for the linear solver.
+    pub(crate) fn active_self_contacts(&self, q: &[f64], free: &[bool], out: &mut Vec<Coupling>) {
+        out.clear();
+        for (index, (element, stencil)) in
+            self.self_contacts.set.elements.iter().zip(&self.self_contacts.set.stencils).enumerate()
+        {
+            if let Some((_, n)) = element.touch(&self.self_contacts.set.local(index, q)) {
+                let slots = [stencil[0], stencil[3]];
+                let root = element.stiffness.sqrt();
+                let direction = |slot: u32| {
+                    std::array::from_fn(|k| if free[slot as usize + k] { root * n[k] } else { 0.0 })
+                };
+                out.push(Coupling { slots, directions: slots.map(direction) });
+            }
         }
     }
 

@@ -262,13 +262,21 @@ impl System {
             let rows = self.chunks.rows(work.chunk);
             work.gradient.fill(0.0);
             let mut out = ChunkOutput { rows, gradient: &mut work.gradient, matrix: None };
-            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, &mut out)).sum();
+            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, 1.0, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }
 
-    /// Energy \[J\], gradient, and a positive semi-definite matrix of second derivatives.
-    pub fn linearise(&self, q: &[f64], gradient: &mut [f64], matrix: &mut BlockMatrix, work: &mut Workspace) -> f64 {
+    /// Energy \[J\], gradient, and a matrix of second derivatives between the exact (`convexity = 0`) and the positive
+    /// semi-definite one (`convexity = 1`).
+    pub fn linearise(
+        &self,
+        q: &[f64],
+        convexity: f64,
+        gradient: &mut [f64],
+        matrix: &mut BlockMatrix,
+        work: &mut Workspace,
+    ) -> f64 {
         work.prepare(&self.chunks);
         matrix.for_each_row_chunk(self.chunks.bounds(), &mut work.chunks, |work, mut rows| {
             rows.clear();
@@ -278,7 +286,7 @@ impl System {
                 gradient: &mut work.gradient,
                 matrix: Some(&mut rows),
             };
-            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, &mut out)).sum();
+            work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, convexity, &mut out)).sum();
         });
         work.collect(&self.chunks, gradient)
     }

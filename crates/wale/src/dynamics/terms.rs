@@ -6,6 +6,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 use wale_numerics::block_matrix::RowChunk;
 use wale_numerics::block_pattern::BlockPattern;
+use wale_numerics::check::Local;
 
 use crate::energy::Element;
 use crate::fabric::coordinates::{BLOCK, Dof};
@@ -162,7 +163,7 @@ pub trait AnyTerm: Send + Sync {
     /// Energy of the elements that a chunk owns \[J\].
     fn chunk_energy(&self, chunk: usize, q: &[f64]) -> f64;
     /// Adds gradient and Hessian rows of every element that touches a chunk; returns the energy of those it owns.
-    fn accumulate(&self, chunk: usize, q: &[f64], out: &mut ChunkOutput<'_, '_>) -> f64;
+    fn accumulate(&self, chunk: usize, q: &[f64], convexity: f64, out: &mut ChunkOutput<'_, '_>) -> f64;
     /// Calls `pair` for every two blocks that an element couples.
     fn pairs(&self, pair: &mut dyn FnMut(u32, u32));
     /// Bytes that the term holds.
@@ -198,7 +199,7 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
             .sum()
     }
 
-    fn accumulate(&self, chunk: usize, q: &[f64], out: &mut ChunkOutput<'_, '_>) -> f64 {
+    fn accumulate(&self, chunk: usize, q: &[f64], convexity: f64, out: &mut ChunkOutput<'_, '_>) -> f64 {
         let (list, own) = &self.lists[chunk];
         let mut energy = 0.0;
         for (k, &index) in list.iter().enumerate() {
@@ -213,7 +214,8 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
                     value
                 }
                 Some(matrix) => {
-                    let local = element.convex(&local_q);
+                    let mut local = Local::zero();
+                    element.add_blended(&local_q, convexity, &mut local);
                     scatter_gradient(stencil, &local.gradient, &out.rows, out.gradient);
                     let places = &self.places[self.first_place[index] as usize..];
                     scatter_hessian(stencil, &local.hessian, &out.rows, places, matrix);
@@ -364,7 +366,7 @@ mod tests {
                 let range = chunks.rows(chunk);
                 let (start, end) = (range.start * 5, range.end * 5);
                 let mut out = ChunkOutput { rows: range, gradient: &mut gradient[start..end], matrix: Some(&mut rows) };
-                energy += term.accumulate(chunk, &q, &mut out);
+                energy += term.accumulate(chunk, &q, 1.0, &mut out);
             }
             let owned: f64 = (0..chunks.count()).map(|chunk| term.chunk_energy(chunk, &q)).sum();
             assert!((owned - energy).abs() < 1e-12 * energy);

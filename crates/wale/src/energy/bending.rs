@@ -49,6 +49,76 @@ impl Bending {
     }
 }
 
+impl Bending {
+    /// Value, gradient and exact Hessian by way of `c = cos θ`, whose derivatives are rational.
+    fn curved(&self, q: &[f64; 12]) -> Local<12> {
+        let (energy, gradient) = self.gradient(q);
+        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
+        let (d1, d2) = (sub(point(q, 4), point(q, 0)), sub(point(q, 8), point(q, 4)));
+        let (l1, l2) = (dot(d1, d1).sqrt(), dot(d2, d2).sqrt());
+        let (t1, t2) = (scale(d1, 1.0 / l1), scale(d2, 1.0 / l2));
+        let (difference, sum) = (sub(t2, t1), add(t1, t2));
+        let theta = 2.0 * dot(difference, difference).sqrt().atan2(dot(sum, sum).sqrt());
+        let c = theta.cos();
+        let rest = q[11] - q[3];
+        let k = self.stiffness / rest;
+        let [f, first, second] = self.profile(theta);
+        // F(c) = f(θ): F′ = −f′/sin θ, F″ = (f″ − f′ cot θ)/sin²θ, by their series at the straight yarn.
+        let (by_c, by_cc) = if theta < 1e-3 {
+            let smooth = (theta * theta + SMOOTHING * SMOOTHING).sqrt();
+            let g = 2.0 - 2.0 * self.rest_angle / smooth;
+            (-g * (1.0 + theta * theta / 6.0), 2.0 * self.rest_angle / (smooth * smooth * smooth) + g / 3.0)
+        } else {
+            let sine = theta.sin();
+            (-first / sine, (second - first * c / sine) / (sine * sine))
+        };
+        // Gradient of c by d₁ and d₂, and the three blocks of its Hessian.
+        let g1: [f64; 3] = std::array::from_fn(|i| (t2[i] - c * t1[i]) / l1);
+        let g2: [f64; 3] = std::array::from_fn(|i| (t1[i] - c * t2[i]) / l2);
+        let mut h = [[[0.0; 3]; 3]; 3];
+        for i in 0..3 {
+            for j in 0..3 {
+                let eye = f64::from(u8::from(i == j));
+                let own = |t: &[f64; 3], g: &[f64; 3], l: f64| {
+                    -(t[i] * g[j] + g[i] * t[j]) / l - c * (eye - t[i] * t[j]) / (l * l)
+                };
+                h[0][i][j] = k * (by_cc * g1[i] * g1[j] + by_c * own(&t1, &g1, l1));
+                h[1][i][j] = k * (by_cc * g2[i] * g2[j] + by_c * own(&t2, &g2, l2));
+                let mixed = (eye - t1[i] * t1[j] - t2[i] * t2[j] + c * t1[i] * t2[j]) / (l1 * l2);
+                h[2][i][j] = k * (by_cc * g1[i] * g2[j] + by_c * mixed);
+            }
+        }
+        // d₁ = x₁ − x₀ and d₂ = x₂ − x₁.
+        for i in 0..3 {
+            for j in 0..3 {
+                let (a, b, m, mt) = (h[0][i][j], h[1][i][j], h[2][i][j], h[2][j][i]);
+                local.hessian[i][j] = a;
+                local.hessian[i][4 + j] = m - a;
+                local.hessian[i][8 + j] = -m;
+                local.hessian[4 + i][j] = mt - a;
+                local.hessian[4 + i][4 + j] = a + b - m - mt;
+                local.hessian[4 + i][8 + j] = m - b;
+                local.hessian[8 + i][j] = -mt;
+                local.hessian[8 + i][4 + j] = mt - b;
+                local.hessian[8 + i][8 + j] = b;
+            }
+            let slope = k * by_c / rest;
+            for (x, g) in [(i, -g1[i]), (4 + i, g1[i] - g2[i]), (8 + i, g2[i])] {
+                local.hessian[x][3] = slope * g;
+                local.hessian[3][x] = slope * g;
+                local.hessian[x][11] = -slope * g;
+                local.hessian[11][x] = -slope * g;
+            }
+        }
+        let twice = 2.0 * k * f / (rest * rest);
+        local.hessian[3][3] = twice;
+        local.hessian[11][11] = twice;
+        local.hessian[3][11] = -twice;
+        local.hessian[11][3] = -twice;
+        local
+    }
+}
+
 impl Element<12> for Bending {
     const NAME: &'static str = "bending";
 
@@ -121,6 +191,15 @@ impl Element<12> for Bending {
             local.add_square(size / (l * l), &spread(angle.in_plane[segment], weights));
         }
         local
+    }
+
+    fn add_blended(&self, q: &[f64; 12], convexity: f64, sum: &mut Local<12>) {
+        if convexity > 0.0 {
+            sum.add_scaled(convexity, &self.convex(q));
+        }
+        if convexity < 1.0 {
+            sum.add_scaled(1.0 - convexity, &self.curved(q));
+        }
     }
 
     fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
@@ -226,7 +305,7 @@ fn clamp2(a: f64, b: f64, c: f64) -> (f64, f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::element::testing::{Random, check, random_yarn};
+    use super::super::element::testing::{Random, check, check_blend, random_yarn};
     use super::*;
 
     #[test]
@@ -236,6 +315,7 @@ mod tests {
             for _ in 0..20 {
                 let q = random_yarn::<3, 12>(&mut random);
                 check(&Bending { stiffness: 3.0, rest_angle }, &q, 1.0);
+                check_blend(&Bending { stiffness: 3.0, rest_angle }, &q, 1e-9);
             }
         }
     }
@@ -248,6 +328,7 @@ mod tests {
             q[8] = 0.1 * random.next(); // back beside the first node
             q[9] = 1.0 + 0.2 * random.next();
             check(&Bending { stiffness: 3.0, rest_angle: 0.4 }, &q, 1.0);
+            check_blend(&Bending { stiffness: 3.0, rest_angle: 0.4 }, &q, 1e-9);
         }
     }
 
@@ -286,6 +367,13 @@ mod tests {
         assert!(at(0.8) < 1e-3 * at(0.0) && at(0.8) < at(0.75) && at(0.8) < at(0.85));
         // Straight and nearly straight agree: the kink of θ is smoothed.
         assert!((at(0.0) - at(1e-9)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn nearly_straight_bends_have_exact_hessians() {
+        for (theta, rest_angle) in [(0.0, 0.0), (5e-4, 0.0), (5e-4, 0.7), (2e-3, 0.7)] {
+            check_blend(&Bending { stiffness: 1.0, rest_angle }, &bent(theta), 1e-5);
+        }
     }
 
     #[test]

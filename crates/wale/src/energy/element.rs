@@ -22,8 +22,12 @@ pub trait Element<const N: usize>: Copy + Send + Sync {
     /// Value, exact gradient, and a positive semi-definite Hessian that a descent method may use, in closed form.
     fn convex(&self, q: &[f64; N]) -> Local<N>;
 
-    /// Adds what [`Element::convex`] gives to a sum of elements over the same coordinates.
-    fn add_convex(&self, q: &[f64; N], sum: &mut Local<N>) {
+    /// Adds value, exact gradient, and a Hessian between the exact one (`convexity = 0`) and the convex one
+    /// (`convexity = 1`), in closed form.
+    ///
+    /// The convex one lets Newton's method take whole steps wherever it is; the exact one is what it converges fast with,
+    /// once it is near.
+    fn add_blended(&self, q: &[f64; N], _convexity: f64, sum: &mut Local<N>) {
         sum.add(&self.convex(q));
     }
 
@@ -47,13 +51,13 @@ impl<A: Element<N>, B: Element<N>, const N: usize> Element<N> for (A, B) {
         self.0.energy(q) + self.1.energy(q)
     }
     fn convex(&self, q: &[f64; N]) -> Local<N> {
-        let mut sum = self.0.convex(q);
-        self.1.add_convex(q, &mut sum);
+        let mut sum = Local::zero();
+        self.add_blended(q, 1.0, &mut sum);
         sum
     }
-    fn add_convex(&self, q: &[f64; N], sum: &mut Local<N>) {
-        self.0.add_convex(q, sum);
-        self.1.add_convex(q, sum);
+    fn add_blended(&self, q: &[f64; N], convexity: f64, sum: &mut Local<N>) {
+        self.0.add_blended(q, convexity, sum);
+        self.1.add_blended(q, convexity, sum);
     }
     fn gradient(&self, q: &[f64; N]) -> (f64, [f64; N]) {
         let (a, b) = (self.0.gradient(q), self.1.gradient(q));
@@ -110,6 +114,29 @@ pub(crate) mod testing {
         }
         let smallest = relative_smallest_eigenvalue(&convex.hessian);
         assert!(smallest > -1e-10, "{} convex Hessian has eigenvalue {smallest:e}", E::NAME);
+    }
+
+    /// The blend's Hessian against the exact one at convexity zero and the convex one at one, and its gradient.
+    pub fn check_blend<E: Element<N>, const N: usize>(element: &E, q: &[f64; N], tolerance: f64) {
+        let (exact, convex) = (element.exact(q), element.convex(q));
+        let largest = exact.hessian.iter().flatten().fold(0.0f64, |m, h| m.max(h.abs()));
+        for (convexity, expected) in [(0.0, &exact.hessian), (1.0, &convex.hessian)] {
+            let mut blended = wale_numerics::check::Local::zero();
+            element.add_blended(q, convexity, &mut blended);
+            for i in 0..N {
+                assert!((blended.gradient[i] - convex.gradient[i]).abs() <= 1e-12 * largest);
+                for j in 0..N {
+                    let difference = (blended.hessian[i][j] - expected[i][j]).abs();
+                    assert!(
+                        difference <= tolerance * largest,
+                        "{} {i} {j} at {convexity}: {} {}",
+                        E::NAME,
+                        blended.hessian[i][j],
+                        expected[i][j]
+                    );
+                }
+            }
+        }
     }
 
     /// A deterministic stream of numbers in `[−1, 1)`.

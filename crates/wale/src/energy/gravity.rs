@@ -32,8 +32,15 @@ impl Element<8> for Gravity {
         Local { energy, gradient, hessian: [[0.0; 8]; 8] }
     }
 
-    fn add_convex(&self, q: &[f64; 8], sum: &mut Local<8>) {
+    fn add_blended(&self, q: &[f64; 8], convexity: f64, sum: &mut Local<8>) {
         sum.add_gradient(self.gradient(q));
+        for k in 0..3 {
+            let w = 0.5 * (1.0 - convexity) * self.weight[k];
+            for (x, u, w) in [(k, 3, w), (4 + k, 3, w), (k, 7, -w), (4 + k, 7, -w)] {
+                sum.hessian[x][u] += w;
+                sum.hessian[u][x] += w;
+            }
+        }
     }
 
     fn gradient(&self, q: &[f64; 8]) -> (f64, [f64; 8]) {

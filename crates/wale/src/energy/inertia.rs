@@ -52,11 +52,11 @@ impl Element<8> for Inertia {
 
     fn convex(&self, q: &[f64; 8]) -> Local<8> {
         let mut local = Local::zero();
-        self.add_convex(q, &mut local);
+        self.add_blended(q, 1.0, &mut local);
         local
     }
 
-    fn add_convex(&self, q: &[f64; 8], sum: &mut Local<8>) {
+    fn add_blended(&self, q: &[f64; 8], _convexity: f64, sum: &mut Local<8>) {
         sum.add_gradient(self.gradient(q));
         let w = self.direction;
         let w2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2];

@@ -66,11 +66,11 @@ impl Element<12> for Rate {
 
     fn convex(&self, q: &[f64; 12]) -> Local<12> {
         let mut local = Local::zero();
-        self.add_convex(q, &mut local);
+        self.add_blended(q, 1.0, &mut local);
         local
     }
 
-    fn add_convex(&self, q: &[f64; 12], sum: &mut Local<12>) {
+    fn add_blended(&self, q: &[f64; 12], _convexity: f64, sum: &mut Local<12>) {
         let change = product(&self.gradient, q) - self.start;
         sum.energy += 0.5 * self.stiffness * change * change;
         for (s, g) in sum.gradient.iter_mut().zip(&self.gradient) {

@@ -22,7 +22,8 @@ pub struct SelfContact {
 
 impl SelfContact {
     /// Depth \[m\] and unit vector from the first node to the second, if they touch.
-    fn touch(&self, q: &[f64; 6]) -> Option<(f64, [f64; 3])> {
+    #[must_use]
+    pub fn touch(&self, q: &[f64; 6]) -> Option<(f64, [f64; 3])> {
         let d = sub(point(q, 3), point(q, 0));
         let length = dot(d, d).sqrt();
         (length < self.distance && length > 0.0).then(|| (self.distance - length, d.map(|x| x / length)))

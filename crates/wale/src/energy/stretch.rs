@@ -29,6 +29,12 @@ impl Element<8> for Stretch {
     }
 
     fn convex(&self, q: &[f64; 8]) -> Local<8> {
+        let mut local = Local::zero();
+        self.add_blended(q, 1.0, &mut local);
+        local
+    }
+
+    fn add_blended(&self, q: &[f64; 8], convexity: f64, local: &mut Local<8>) {
         let d = sub(point(q, 4), point(q, 0));
         let rest = q[7] - q[3];
         let length = dot(d, d).sqrt();
@@ -37,9 +43,7 @@ impl Element<8> for Stretch {
         let t = d.map(|x| x * inverse_length);
         let tension = self.stiffness * (ratio - 1.0);
         let by_rest = 0.5 * self.stiffness * (1.0 - ratio * ratio);
-        let mut local = Local::zero();
-        local.energy = 0.5 * self.stiffness * rest * (ratio - 1.0) * (ratio - 1.0);
-        local.gradient = [
+        let gradient = [
             -tension * t[0],
             -tension * t[1],
             -tension * t[2],
@@ -49,9 +53,11 @@ impl Element<8> for Stretch {
             tension * t[2],
             by_rest,
         ];
+        local.add_gradient((0.5 * self.stiffness * rest * (ratio - 1.0) * (ratio - 1.0), gradient));
         let g = [-t[0], -t[1], -t[2], ratio, t[0], t[1], t[2], -ratio];
         local.add_square(self.stiffness / rest, &g);
-        let side = tension.max(0.0) * inverse_length;
+        // Pushed together, a segment buckles: the convex Hessian leaves that out.
+        let side = if tension > 0.0 { tension } else { (1.0 - convexity) * tension } * inverse_length;
         for i in 0..3 {
             for j in 0..3 {
                 let value = side * (f64::from(u8::from(i == j)) - t[i] * t[j]);
@@ -61,7 +67,6 @@ impl Element<8> for Stretch {
                 local.hessian[4 + i][j] -= value;
             }
         }
-        local
     }
 
     fn gradient(&self, q: &[f64; 8]) -> (f64, [f64; 8]) {
@@ -81,7 +86,7 @@ impl Element<8> for Stretch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::element::testing::{Random, check, random_yarn};
+    use super::super::element::testing::{Random, check, check_blend, random_yarn};
     use super::*;
 
     #[test]
@@ -90,6 +95,7 @@ mod tests {
         for _ in 0..20 {
             let q = random_yarn::<2, 8>(&mut random);
             check(&Stretch { stiffness: 3.0 }, &q, 1.0);
+            check_blend(&Stretch { stiffness: 3.0 }, &q, 1e-10);
         }
     }
 
