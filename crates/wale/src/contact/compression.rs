@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
-use crate::model::{Network, NodeId, PassId};
+use crate::model::{Network, NodeId, PassId, SegmentKind};
 
 /// Compression of two-yarn contact nodes from the tension of their yarns.
 ///
@@ -27,6 +27,8 @@ pub struct Compression {
 struct Neighbours {
     block: [u32; 3],
     slot: [u32; 3],
+    /// Whether the segment before and the one after is a chain of loops drawn as one strand.
+    chain: [bool; 2],
 }
 
 impl Compression {
@@ -38,7 +40,9 @@ impl Compression {
             let ends = [-1, 0, 1].map(|step| {
                 network.neighbour(yarn_of[pass.index()], pass, step).map_or(pass, |neighbour| neighbour.pass)
             });
+            let chain = [ends[0], pass].map(|p| network.segment_kind[p.index()] == SegmentKind::Chain);
             Neighbours {
+                chain,
                 block: ends.map(|p| network.pass_node[p.index()].0),
                 slot: ends.map(|p| coordinates.slot(p) as u32),
             }
@@ -73,11 +77,12 @@ impl Compression {
         self.contacts.is_empty()
     }
 
-    /// Compressions `λ` \[N\], one per contact, of a fabric at `q` whose yarn has stretch stiffness `k_s` \[N\].
-    pub fn evaluate(&self, q: &[f64], stretch_stiffness: f64, out: &mut Vec<f64>) {
+    /// Compressions `λ` \[N\], one per contact, of a fabric at `q` whose yarn, and whose cast-on and bind-off, have these
+    /// stretch stiffnesses \[N\].
+    pub fn evaluate(&self, q: &[f64], stiffness: [f64; 2], out: &mut Vec<f64>) {
         out.resize(self.contacts.len(), 0.0);
         out.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, [a, b])| {
-            let (fa, fb) = (a.pull(q, stretch_stiffness), b.pull(q, stretch_stiffness));
+            let (fa, fb) = (a.pull(q, stiffness), b.pull(q, stiffness));
             let square: f64 = (0..3).map(|k| (fa[k] - fb[k]) * (fa[k] - fb[k])).sum();
             *lambda = 0.5 * square.sqrt();
         });
@@ -86,7 +91,7 @@ impl Compression {
 
 impl Neighbours {
     /// Net pull of the yarn on the node across its direction there \[N\].
-    fn pull(&self, q: &[f64], stretch_stiffness: f64) -> [f64; 3] {
+    fn pull(&self, q: &[f64], stiffness: [f64; 2]) -> [f64; 3] {
         let mut force = [0.0; 3];
         let mut along = [0.0; 3];
         let here = self.block[1] as usize * BLOCK;
@@ -96,7 +101,7 @@ impl Neighbours {
             let d: [f64; 3] = std::array::from_fn(|k| q[there + k] - q[here + k]);
             let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
             if length > 0.0 && rest > 0.0 {
-                let tension = stretch_stiffness * (length / rest - 1.0);
+                let tension = stiffness[usize::from(self.chain[end / 2])] * (length / rest - 1.0);
                 let sign = if end == 0 { -1.0 } else { 1.0 };
                 for k in 0..3 {
                     force[k] += tension / length * d[k];
@@ -133,9 +138,9 @@ mod tests {
             q[5 * block..5 * block + 3].copy_from_slice(&x);
             q[5 * block + 3] = u;
         }
-        let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13] };
+        let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13], chain: [false; 2] };
         // The other yarn pulls the node back with the opposite of the first one's resultant, as in equilibrium.
-        let f = yarn.pull(&q, 1.0);
+        let f = yarn.pull(&q, [1.0; 2]);
         let mut out = Vec::new();
         let pull = (f[0] * f[0] + f[1] * f[1]).sqrt();
         // Two ends, the half of it each, out of the plane by a hair so that the holder has a direction.
@@ -145,8 +150,8 @@ mod tests {
             q[5 * block + 2] = z;
         }
         (q[18], q[23]) = (-1.0, 1.0);
-        let holder = Neighbours { block: [3, 0, 4], slot: [18, 4, 23] };
-        Compression { contacts: vec![[yarn, holder]], contact_of: Vec::new() }.evaluate(&q, 1.0, &mut out);
+        let holder = Neighbours { block: [3, 0, 4], slot: [18, 4, 23], chain: [false; 2] };
+        Compression { contacts: vec![[yarn, holder]], contact_of: Vec::new() }.evaluate(&q, [1.0; 2], &mut out);
         out[0]
     }
 

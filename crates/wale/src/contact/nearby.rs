@@ -23,7 +23,13 @@ const BITS: u32 = 21;
 impl Nearby {
     /// Pairs of nodes `(a, b)`, `a < b`, nearer than `reach` \[m\] now and farther than `apart` \[m\] in the layout,
     /// in order of `a`, then `b`.
-    pub fn find(&mut self, now: impl Fn(usize) -> DVec3 + Sync, layout: &[DVec3], reach: f64, apart: f64) -> &[[u32; 2]] {
+    pub fn find(
+        &mut self,
+        now: impl Fn(usize) -> DVec3 + Sync,
+        layout: &[DVec3],
+        reach: f64,
+        apart: f64,
+    ) -> &[[u32; 2]] {
         let count = layout.len();
         let origin = (0..count).map(&now).fold(DVec3::INFINITY, DVec3::min);
         let cell_of = |x: DVec3| ((x - origin) / reach).floor().as_u64vec3() + 1;
@@ -82,8 +88,7 @@ mod tests {
     #[test]
     fn finds_the_pairs_that_looking_at_all_of_them_finds() {
         // A sheet of 20 × 20 rolled into a tube of two turns.
-        let layout: Vec<DVec3> =
-            (0..400).map(|k| DVec3::new(f64::from(k % 20), f64::from(k / 20), 0.0)).collect();
+        let layout: Vec<DVec3> = (0..400).map(|k| DVec3::new(f64::from(k % 20), f64::from(k / 20), 0.0)).collect();
         let rolled: Vec<DVec3> = layout
             .iter()
             .map(|x| {

@@ -146,7 +146,9 @@ impl Newton {
             let left = if ratio < 0.5 { (ratio / (1.0 - ratio)).max(self.linear_settings.tolerance) } else { 1.0 };
             previous = mean;
             if !solved.negative_curvature
-                && left * mean <= settings.tolerance && left * largest <= SINGLE_NODE * settings.tolerance {
+                && left * mean <= settings.tolerance
+                && left * largest <= SINGLE_NODE * settings.tolerance
+            {
                 self.try_length(q, length);
                 q.copy_from_slice(&self.trial);
                 report.last_move = length * largest;

@@ -3,7 +3,9 @@
 use thiserror::Error;
 use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::coarse_space::CoarseSpace;
-use wale_numerics::conjugate_gradient::{ConjugateGradient, LinearOperator, ConjugateGradientEnd, ConjugateGradientSettings};
+use wale_numerics::conjugate_gradient::{
+    ConjugateGradient, ConjugateGradientEnd, ConjugateGradientSettings, LinearOperator,
+};
 use wale_numerics::incomplete_cholesky::{IncompleteCholesky, IncompleteCholeskySettings};
 use wale_numerics::preconditioner::Additive;
 use wale_numerics::prolongation::Prolongation;
@@ -155,7 +157,12 @@ impl Linear {
     ///
     /// # Errors
     /// If the matrix is not positive definite or not finite.
-    pub fn solve(&mut self, matrix: &BlockMatrix, couplings: &[Coupling], x: &mut [f64]) -> Result<LinearReport, LinearError> {
+    pub fn solve(
+        &mut self,
+        matrix: &BlockMatrix,
+        couplings: &[Coupling],
+        x: &mut [f64],
+    ) -> Result<LinearReport, LinearError> {
         match self {
             Self::None => Err(LinearError::NegativeCurvature),
             Self::Cholesky(factor) => {

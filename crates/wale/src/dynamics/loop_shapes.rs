@@ -86,7 +86,7 @@ fn lay_arc_lengths(
                 break;
             }
             let like = match (likes[p], likes[next], network.segment_kind[p]) {
-                (_, _, SegmentKind::Edge) => None,
+                (_, _, SegmentKind::Edge | SegmentKind::Chain) => None,
                 (Some(a), Some(b), _) => rest_between(a, b),
                 _ => None,
             };

@@ -9,6 +9,7 @@ use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
 use crate::energy::{Inertia, ObstacleContact, Rate, SelfContact};
 use crate::fabric::coordinates::{BLOCK, dof};
+use crate::fabric::mechanics::chain_stiffness;
 use crate::model::Obstacle;
 
 /// Where a node touches an obstacle during a step.
@@ -58,7 +59,8 @@ impl System {
         self.wraps.update(q, |_, (wrapping, rate), local| {
             *rate = if beta_over_h > 0.0 { Rate::of_wrap(local, wrapping, beta_over_h) } else { Rate::NONE };
         });
-        self.compression.evaluate(q, self.yarn.stretch_stiffness, compression);
+        let stiffness = [self.yarn.stretch_stiffness, chain_stiffness(&self.yarn, &self.card)];
+        self.compression.evaluate(q, stiffness, compression);
         let (mu, least) = (self.yarn.friction_coefficient, self.card.residual_compression);
         let rubbing = &self.rubbing;
         let lambda = &*compression;
@@ -152,7 +154,8 @@ impl System {
         self.self_contacts.set.elements.clear();
         self.self_contacts.set.stencils.clear();
         for pair in pairs {
-            let mass = self.yarn.linear_density * pair.iter().map(|&node| self.yarn_at_node[node as usize]).sum::<f64>();
+            let mass =
+                self.yarn.linear_density * pair.iter().map(|&node| self.yarn_at_node[node as usize]).sum::<f64>();
             let stiffness = 1e3 * mass * 9.81 / (PENALTY_DEPTH * radius);
             let [a, b] = pair.map(|node| dof(BLOCK * node as usize));
             self.self_contacts.set.push(SelfContact { stiffness, distance }, [a, a + 1, a + 2, b, b + 1, b + 2]);
@@ -172,9 +175,8 @@ impl System {
             if let Some((_, n)) = element.touch(&self.self_contacts.set.local(index, q)) {
                 let slots = [stencil[0], stencil[3]];
                 let root = element.stiffness.sqrt();
-                let direction = |slot: u32| {
-                    std::array::from_fn(|k| if free[slot as usize + k] { root * n[k] } else { 0.0 })
-                };
+                let direction =
+                    |slot: u32| std::array::from_fn(|k| if free[slot as usize + k] { root * n[k] } else { 0.0 });
                 out.push(Coupling { slots, directions: slots.map(direction) });
             }
         }

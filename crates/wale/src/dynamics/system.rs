@@ -10,8 +10,8 @@ use wale_numerics::block_pattern::BlockPattern;
 use super::terms::{AnyTerm, ChunkOutput, Chunks, Term};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
-    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing, StitchLength,
-    Stretch, Wrapping,
+    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing,
+    StitchLength, Stretch, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -303,16 +303,19 @@ impl System {
         segments.map(shortest).reduce(|| f64::INFINITY, f64::min).min(1.0)
     }
 
-    /// Largest ratio of a segment's length to its rest length, and smallest rest length \[m\].
+    /// Largest ratio of a yarn segment's length to its rest length (a cast-on or bind-off is not one yarn), and smallest
+    /// rest length \[m\].
     #[must_use]
     pub fn extremes(&self, q: &[f64]) -> (f64, f64) {
-        let of = |stencil: &[u32; 8]| {
+        let of = |(stencil, ((stretch, _), _)): (&[u32; 8], &((Stretch, Gravity), Inertia))| {
             let at = |k: usize| q[stencil[k] as usize];
             let rest = at(7) - at(3);
             let length = ((at(4) - at(0)).powi(2) + (at(5) - at(1)).powi(2) + (at(6) - at(2)).powi(2)).sqrt();
-            (length / rest, rest)
+            let ratio = if stretch.stiffness < self.yarn.stretch_stiffness { 1.0 } else { length / rest };
+            (ratio, rest)
         };
-        let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
+        let set = &self.segments.set;
+        let segments = set.stencils.par_iter().zip(&set.elements).with_min_len(4096);
         segments.map(of).reduce(|| (0.0, f64::INFINITY), |a, b| (a.0.max(b.0), a.1.min(b.1)))
     }
 

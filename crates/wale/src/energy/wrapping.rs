@@ -258,8 +258,7 @@ fn add_weight_curvature(
     let [a, b] = &hinge.sine_gradient;
     // Angle and weight, then both weights.
     let mixed = factor * stiffness * deviation * sign;
-    let by_weight: [f64; 12] =
-        std::array::from_fn(|i| slopes[0] * weights[1] * a[i] + slopes[1] * weights[0] * b[i]);
+    let by_weight: [f64; 12] = std::array::from_fn(|i| slopes[0] * weights[1] * a[i] + slopes[1] * weights[0] * b[i]);
     local.add_symmetric(2.0 * mixed, &hinge.gradient, &by_weight);
     local.add_symmetric(2.0 * factor * half * slopes[0] * slopes[1], a, b);
     for (k, (side, from, to)) in [(sub(x4, x0), 0, 9), (sub(x3, x1), 3, 6)].into_iter().enumerate() {

@@ -20,6 +20,13 @@ pub struct Mechanics {
     pub spacing: Elements<Spacing, 2>,
 }
 
+/// Stretch stiffness of a cast-on or bind-off \[N\], a thousand `k_b/ℓ²`: a chain of loops gives as a course of loops
+/// does, by bending, where one straight strand would hold the whole edge of the fabric.
+#[must_use]
+pub fn chain_stiffness(yarn: &YarnCard, card: &FabricCard) -> f64 {
+    1000.0 * yarn.bending_stiffness / card.loop_length.powi(2)
+}
+
 impl Mechanics {
     /// Makes the elements of a network.
     pub fn new(network: &Network, yarn: &YarnCard, card: &FabricCard, map: &mut dyn CoordinateMap) -> Self {
@@ -52,7 +59,11 @@ impl Mechanics {
         let Some(next) = network.neighbour(yarn, pass, 1) else { return };
         let here = point(map, network, pass, [0; 2], 0);
         let there = point(map, network, next.pass, next.image, next.turns);
-        self.stretch.push(Stretch { stiffness: material.stretch_stiffness }, join(here, there));
+        let stiffness = match network.segment_kind[pass.index()] {
+            SegmentKind::Chain => chain_stiffness(material, card),
+            _ => material.stretch_stiffness,
+        };
+        self.stretch.push(Stretch { stiffness }, join(here, there));
         if let Some(previous) = network.neighbour(yarn, pass, -1) {
             let before = point(map, network, previous.pass, previous.image, previous.turns);
             let rest_angle = match network.pass_kind[pass.index()] {
@@ -75,7 +86,7 @@ impl Mechanics {
             SegmentKind::Leg => card.spacing_leg,
             SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker,
             // Half of what lies there at first, where the layout is tighter than the card.
-            SegmentKind::Edge => {
+            SegmentKind::Edge | SegmentKind::Chain => {
                 let at = |p: PassId| network.arc_length[p.index()];
                 card.spacing_head_sinker.min(0.5 * (at(next.pass) - at(pass)).abs())
             }

@@ -26,8 +26,10 @@ pub enum SegmentKind {
     Head,
     /// A sinker between two neighbouring loops of a course.
     Sinker,
-    /// Cast-on ties, selvedge turns, bind-off and tails.
+    /// Cast-on ties, selvedge turns and tails.
     Edge,
+    /// Cast-on and bind-off between two stitches: a chain of loops in the real fabric, one strand here.
+    Chain,
 }
 
 /// Which of a stitch contact's two opposite pairs wraps.

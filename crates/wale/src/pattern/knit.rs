@@ -175,10 +175,10 @@ impl<'a> Builder<'a> {
     fn cast_on_steps(&self) -> Vec<Step> {
         let mut steps = Vec::with_capacity(6 * self.chart.column_count());
         for column in 0..self.chart.column_count() {
-            let tie = Step { slides: false, ..step(column, PassKind::Edge, SegmentKind::Edge) };
-            steps.push(tie);
+            let tie = |onward| Step { slides: false, ..step(column, PassKind::Edge, onward) };
+            steps.push(tie(SegmentKind::Edge));
             self.upward(None, column, &mut steps);
-            steps.push(tie);
+            steps.push(tie(SegmentKind::Chain));
         }
         steps
     }
@@ -237,9 +237,9 @@ impl<'a> Builder<'a> {
 
         let ends = [self.layout.beside(rows, 0.0, false), self.layout.beside(rows, 0.0, true)];
         let [left, right] = ends.map(|place| self.add_node(place));
-        let mut path = vec![(fixed(left), SegmentKind::Edge, 0.0)];
+        let mut path = vec![(fixed(left), SegmentKind::Chain, 0.0)];
         for node in self.top_start..self.top_start + 2 * self.chart.column_count() {
-            path.push((step(node, PassKind::Edge, SegmentKind::Edge), SegmentKind::Edge, 0.0));
+            path.push((step(node, PassKind::Edge, SegmentKind::Chain), SegmentKind::Chain, 0.0));
         }
         path.push((fixed(right), SegmentKind::Edge, 0.0));
         self.lay_yarn(&path);
@@ -262,7 +262,7 @@ impl<'a> Builder<'a> {
     fn rest_length(&self, step: &Step, distance: f64) -> f64 {
         match step.onward {
             SegmentKind::Stitch => self.card.stitch_length,
-            SegmentKind::Edge => distance,
+            SegmentKind::Edge | SegmentKind::Chain => distance,
             SegmentKind::Leg | SegmentKind::Head | SegmentKind::Sinker => {
                 distance * self.layout.slack(self.card.loop_length, self.card.stitch_length) + step.extra
             }
