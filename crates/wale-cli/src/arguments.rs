@@ -41,6 +41,8 @@ pub enum Command {
     Inspect(Inspect),
     /// Draw frames of a run as PNG pictures
     Render(Render),
+    /// Plot forces, sizes and energies of a run
+    Plot(Plot),
     /// Write a run as one HTML page to turn in the hand
     View(View),
     /// Write a run in a format that other programs read
@@ -211,6 +213,16 @@ impl Render {
             size: None,
         }
     }
+}
+
+/// `wale plot`
+#[derive(Debug, Args)]
+pub struct Plot {
+    /// Run folder
+    pub run: PathBuf,
+    /// PNG or SVG file; inside the run folder if not given
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
 }
 
 /// `wale view`

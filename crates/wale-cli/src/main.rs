@@ -31,6 +31,7 @@ fn main() -> ExitCode {
         Command::Relax(arguments) => commands::relax::relax(arguments),
         Command::Inspect(arguments) => commands::inspect::inspect(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
+        Command::Plot(arguments) => commands::plot::plot(arguments),
         Command::View(arguments) => commands::view::view(arguments),
         Command::Export(arguments) => commands::export::export(arguments),
         Command::Bench(arguments) => commands::bench::bench(arguments),

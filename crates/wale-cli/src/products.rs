@@ -1,11 +1,11 @@
-//! What a scene asks to be made of a run at its end: pictures, a page, exports.
+//! What a scene asks to be made of a run at its end: pictures and a plot, a page, exports.
 
 use std::path::{Path, PathBuf};
 
 use wale::model::{ExportFormat, Output, Pictures};
 
-use crate::arguments::{Export, Format, FrameChoice, Render, Up, View};
-use crate::commands::{export, render, view};
+use crate::arguments::{Export, Format, FrameChoice, Plot, Render, Up, View};
+use crate::commands::{export, plot, render, view};
 use crate::exit::Failure;
 
 /// Makes them, and says which files they are.
@@ -21,6 +21,7 @@ pub fn make(run: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
     };
     if let Some(frames) = frames {
         made.extend(render::draw_frames(&Render { frames, ..Render::of(run) })?);
+        made.push(plot::write_plot(&Plot { run: run.to_owned(), out: None })?);
     }
     if output.view {
         made.push(view::write_page(&View { run: run.to_owned(), out: None })?);

@@ -35,6 +35,7 @@ fn a_run_makes_what_its_scene_asks_for() {
     let results = workshop.path("a.run").join("results");
     for name in [
         "picture.png",
+        "plot.png",
         "view.html",
         "yarns.usda",
         "yarns.pvd",

@@ -4,17 +4,16 @@ use std::time::Instant;
 
 use serde::Serialize;
 use wale::model::LinearSolver;
-use wale::pattern::knit;
 use wale::scene::Scene;
-use wale::simulation::Simulation;
+use wale::simulation::{Simulation, Start};
 use wale_numerics::block_matrix::BlockMatrix;
 
 use crate::exit::{Code, Failure};
 
 /// Step that speeds are measured at \[s\].
 const STEP: f64 = 1e-3;
-/// Steps before the measurement: caches, factors, and the fabric off its initial layout.
-const WARM_UP: usize = 3;
+/// Steps before the measurement: caches, factors, and edges that settle from the layout of the fabric's repeat.
+const WARM_UP: usize = 15;
 
 /// What one swatch took.
 #[derive(Clone, Debug, Serialize)]
@@ -109,8 +108,8 @@ fn scene(nodes: u32) -> Result<Scene, Failure> {
 }
 
 fn simulation(scene: &Scene) -> Simulation {
-    let network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
-    Simulation::new(network, &scene.yarn, &scene.fabric, scene.plan.clone())
+    let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, true);
+    Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone())
 }
 
 fn step(simulation: &mut Simulation) -> Result<wale::simulation::StepReport, Failure> {

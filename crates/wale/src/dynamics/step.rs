@@ -53,11 +53,14 @@ impl System {
             };
         });
         let beta_over_h = self.yarn.stiffness_damping / h;
-        self.bends.update(q, |_, (bending, rate), local| {
-            *rate = if beta_over_h > 0.0 { Rate::of_bend(local, bending.stiffness, beta_over_h) } else { Rate::NONE };
+        let halfway = |stencil: &[u32; 12], local: &[f64; 12]| -> [f64; 12] {
+            std::array::from_fn(|i| local[i] + 0.5 * h * v[stencil[i] as usize])
+        };
+        self.bends.update(q, |stencil, (bending, rate), local| {
+            *rate = Rate::of_bend(local, &halfway(stencil, local), bending.stiffness, beta_over_h);
         });
-        self.wraps.update(q, |_, (wrapping, rate), local| {
-            *rate = if beta_over_h > 0.0 { Rate::of_wrap(local, wrapping, beta_over_h) } else { Rate::NONE };
+        self.wraps.update(q, |stencil, (wrapping, rate), local| {
+            *rate = Rate::of_wrap(local, &halfway(stencil, local), wrapping, beta_over_h);
         });
         let stiffness = [self.yarn.stretch_stiffness, chain_stiffness(&self.yarn, &self.card)];
         self.compression.evaluate(q, stiffness, compression);

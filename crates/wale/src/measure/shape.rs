@@ -34,7 +34,7 @@ pub struct Shape {
 }
 
 /// Most loops to either side over which a curvature is taken; single loops stand too unevenly.
-const REACH: usize = 4;
+const REACH: usize = 2;
 /// Share of the chart that counts as an edge.
 const EDGE: f64 = 0.15;
 

@@ -1,0 +1,141 @@
+//! Every scene of the gallery, run to its end: the numbers that its picture stands for.
+
+use std::path::Path;
+use std::sync::Mutex;
+
+use wale::measure::Shape;
+use wale::scene::Scene;
+use wale::simulation::{Simulation, Start, StepReport};
+
+/// One scene at a time: each uses all processors.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// A scene from its first to its last step.
+struct Played {
+    start: Start,
+    first: Shape,
+    last: Shape,
+    steps: Vec<StepReport>,
+    /// Speed of the nodes at the end, root mean square \[m/s\].
+    speed: f64,
+}
+
+fn play(name: &str) -> Played {
+    let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let scene = Scene::read(&path).unwrap();
+    let compensate = scene.plan.simulation.rest_shape_compensation;
+    let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, compensate);
+    let mut simulation = Simulation::new(start.network.clone(), &scene.yarn, &scene.fabric, scene.plan.clone());
+    let first = Shape::of(simulation.network(), &simulation.frame());
+    let mut steps = Vec::new();
+    while !simulation.finished() {
+        steps.push(simulation.step().unwrap());
+    }
+    let nodes = simulation.network().node_count();
+    let velocities = &simulation.state().velocities[..5 * nodes];
+    let squares: f64 = velocities.chunks_exact(5).map(|v| v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sum();
+    Played {
+        first,
+        last: Shape::of(simulation.network(), &simulation.frame()),
+        start,
+        steps,
+        speed: (squares / nodes as f64).sqrt(),
+    }
+}
+
+impl Played {
+    /// Force of a grip along x at the step that ends nearest to a time.
+    fn force_at(&self, grip: usize, time: f64) -> f64 {
+        let near = |step: &&StepReport| (step.time - time).abs();
+        let step = self.steps.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
+        step.grips[grip].force.x
+    }
+}
+
+#[test]
+fn stockinette_curls_and_garter_lies_flat() {
+    let curl = play("stockinette-curl.toml");
+    println!("stockinette: {:?}, speed {:.1} mm/s", curl.last, 1e3 * curl.speed);
+    assert!(curl.last.end_edges.wale_per_m > 50.0, "positive is to the front");
+    assert!(curl.last.side_edges.course_per_m < -20.0, "negative is to the back");
+    assert!(curl.speed < 0.02, "it is at rest, but for {} m/s", curl.speed);
+    assert!(curl.last.extent_m[1] < 0.5 * curl.first.extent_m[1], "rolled up from both ends");
+
+    let garter = play("garter-flat.toml");
+    println!("garter: {:?}, speed {:.1} mm/s", garter.last, 1e3 * garter.speed);
+    assert!(garter.last.curvature.wale_per_m.abs() < 0.05 * curl.last.end_edges.wale_per_m);
+    assert!(garter.last.curvature.course_per_m.abs() < 0.05 * curl.last.end_edges.wale_per_m);
+}
+
+#[test]
+fn the_sides_of_stockinette_roll_to_the_back() {
+    let sides = play("stockinette-sides.toml");
+    println!("held at both ends: {:?}, speed {:.1} mm/s", sides.last, 1e3 * sides.speed);
+    assert!(sides.last.side_edges.course_per_m < -30.0, "negative is to the back");
+    assert!(sides.last.curvature.wale_per_m.abs() < 0.2 * sides.last.side_edges.course_per_m.abs());
+}
+
+#[test]
+fn a_rib_unfolds_then_slides_then_stretches() {
+    let rib = play("rib-stretch.toml");
+    // Slopes of the force in the three regimes [N/m]: the grip moves 60 mm a second.
+    let slope = |from: f64, to: f64| (rib.force_at(1, to / 60.0) - rib.force_at(1, from / 60.0)) / (1e-3 * (to - from));
+    let (unfolding, sliding, stretching) = (slope(5.0, 30.0), slope(45.0, 80.0), slope(120.0, 150.0));
+    println!("rib: {unfolding:.1}, {sliding:.1}, {stretching:.1} N/m");
+    assert!(sliding > 1.5 * unfolding && stretching > 5.0 * sliding);
+    let kind = |name: &str| {
+        let last = rib.steps.last().unwrap();
+        last.energies.iter().find(|(kind, _)| *kind == name).unwrap().1
+    };
+    assert!(kind("stretch") > 3.0 * kind("bending"), "at the end it is the yarn that is stretched");
+}
+
+#[test]
+fn a_long_pull_leaves_a_set_and_a_small_one_none() {
+    let (long, small) = (play("permanent-set.toml"), play("small-pull.toml"));
+    let widening = long.last.wale_spacing_m / small.last.wale_spacing_m - 1.0;
+    println!(
+        "wale spacing: {:.2} mm laid out, {:.2} mm after a small pull, {:.2} mm after a long one: {:+.1} %",
+        1e3 * small.first.wale_spacing_m,
+        1e3 * small.last.wale_spacing_m,
+        1e3 * long.last.wale_spacing_m,
+        100.0 * widening
+    );
+    assert!(widening > 0.05);
+    assert!((small.last.wale_spacing_m / small.first.wale_spacing_m - 1.0).abs() < 0.5 * widening);
+}
+
+#[test]
+fn a_loop_of_loading_and_unloading_takes_work() {
+    let pulled = play("load-unload.toml");
+    let most = pulled.steps.iter().map(|step| step.grips[1].work).fold(0.0, f64::max);
+    let left = pulled.steps.last().unwrap().grips[1].work;
+    let (out, back) = (pulled.force_at(1, 0.7), pulled.force_at(1, 1.3));
+    println!(
+        "work {:.2} mJ out, {:.2} mJ not returned; force at 21 mm {out:.2} N out, {back:.2} N back",
+        1e3 * most,
+        1e3 * left
+    );
+    assert!(left > 0.1 * most && back < 0.8 * out);
+}
+
+#[test]
+fn garter_comes_to_rest_on_a_ball() {
+    let ball = play("garter-on-ball.toml");
+    println!("garter on a ball: {} steps, speed {:.2} mm/s, {:?}", ball.steps.len(), 1e3 * ball.speed, ball.last);
+    assert!(ball.speed < 0.02, "{} m/s", ball.speed);
+    assert!(ball.steps.last().unwrap().contacts > 100);
+    assert!(ball.last.extent_m[2] > 0.03, "it hangs down around the ball");
+    assert!(ball.steps.last().unwrap().largest_stretch < 1.2);
+}
+
+#[test]
+fn rest_shape_compensation_keeps_the_size() {
+    // Height of the hanging fabric at the end over that of its layout.
+    let shrinkage = |played: &Played| 1.0 - played.last.extent_m[2] / played.first.extent_m[2];
+    let (with, without) = (play("rest-shape-with.toml"), play("rest-shape-without.toml"));
+    println!("shrinkage {:.1} % with, {:.1} % without", 100.0 * shrinkage(&with), 100.0 * shrinkage(&without));
+    assert!(with.start.compensation.is_some() && without.start.compensation.is_none());
+    assert!(shrinkage(&with).abs() < 0.03 && shrinkage(&without).abs() > 3.0 * shrinkage(&with).abs());
+}
