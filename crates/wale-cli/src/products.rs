@@ -21,7 +21,7 @@ pub fn make(run: &Path, output: &Output) -> Result<Vec<PathBuf>, Failure> {
     };
     if let Some(frames) = frames {
         made.extend(render::draw_frames(&Render { frames, ..Render::of(run) })?);
-        made.push(plot::write_plot(&Plot { run: run.to_owned(), out: None })?);
+        made.extend(plot::write_plot(&Plot { run: run.to_owned(), out: None })?);
     }
     if output.view {
         made.push(view::write_page(&View { run: run.to_owned(), out: None })?);

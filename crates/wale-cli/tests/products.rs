@@ -98,3 +98,12 @@ fn reports_are_json() {
     let again = wale(&["check", &workshop.text("resolved.toml"), "--resolved"]);
     assert_eq!(printed(&again), printed(&resolved));
 }
+
+#[test]
+fn a_run_too_short_for_a_plot_is_still_a_run() {
+    let workshop = Workshop::new();
+    let asked = scene(0.005).replace("pictures = \"none\"", "pictures = \"last\"");
+    fs::write(workshop.path("scene.toml"), asked).unwrap();
+    assert_succeeds(&workshop.run("scene.toml", "a.run", &[]));
+    assert!(workshop.path("a.run/results/picture.png").exists());
+}

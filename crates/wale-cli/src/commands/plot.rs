@@ -13,27 +13,34 @@ use crate::say;
 
 /// Draws it.
 pub fn plot(arguments: &Arguments) -> Result<(), Failure> {
-    say!("{}", write_plot(arguments)?.display())
+    let Some(path) = write_plot(arguments)? else {
+        let what = format_args!("{}: fewer than two rows of metrics", arguments.run.display());
+        return Err(Failure::new(Code::BadInput, what));
+    };
+    say!("{}", path.display())
 }
 
-/// Draws it, and says which file it is.
+/// Draws it, and says which file it is; `None` if the run is so short that there is no line to draw.
 ///
 /// # Errors
-/// When the metrics cannot be read, hold fewer than two rows, or the file cannot be written.
-pub fn write_plot(arguments: &Arguments) -> Result<PathBuf, Failure> {
+/// When the metrics cannot be read, or the file cannot be written.
+pub fn write_plot(arguments: &Arguments) -> Result<Option<PathBuf>, Failure> {
     let run = OpenedRun::open(&arguments.run, FrameChoice::Last)?;
     let path = run.results(arguments.out.as_ref(), "plot.png")?;
     let metrics = run.reader.path().join("metrics.csv");
     let text = std::fs::read_to_string(&metrics).map_err(|error| Failure::io(&metrics, "read", error))?;
-    let table = Table::read(&text)
-        .filter(|table| table.rows.len() > 1)
-        .ok_or_else(|| Failure::new(Code::BadInput, format_args!("{}: fewer than two rows", metrics.display())))?;
+    let table = Table::read(&text).ok_or_else(|| {
+        Failure::new(Code::BadInput, format_args!("{}: it is no table of numbers", metrics.display()))
+    })?;
+    if table.rows.len() < 2 {
+        return Ok(None);
+    }
     let plot = table.plot(&run.scene.title);
     let svg = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
     let bytes = if svg { plot.to_svg().map(String::into_bytes) } else { plot.to_png() }
         .map_err(|error| Failure::new(Code::BadInput, error))?;
     write_atomically(&path, |out| io::Write::write_all(out, &bytes))?;
-    Ok(path)
+    Ok(Some(path))
 }
 
 /// The metrics of a run: names with units, and numbers.
