@@ -118,7 +118,7 @@ fn kernels(wales: usize, courses: usize) {
     let mut gradient = ConjugateGradient::new(b.len());
     for tolerance in [1e-1, 1e-2] {
         let settings =
-            ConjugateGradientSettings { relative_tolerance: tolerance, max_iterations: 200, absolute_tolerance: 0.0 };
+            ConjugateGradientSettings { relative_tolerance: tolerance, max_iterations: 200, ..Default::default() };
         let mut solve = |name: &str, preconditioner: &mut dyn Preconditioner| {
             let mut iterations = 0;
             let seconds = shortest(2, || {

@@ -11,8 +11,15 @@ use std::sync::Arc;
 
 /// Slots of a block: three positions, two arc lengths.
 pub const SLOTS: usize = 5;
-/// Numbers in a block, row-major.
+/// Numbers in a block, column-major: a column times a number is what a product adds up.
 pub const BLOCK: usize = SLOTS * SLOTS;
+/// Numbers that a register holds; a column is read with what follows it.
+pub const LANES: usize = 8;
+/// Numbers after the last column that are read with it.
+pub const PADDING: usize = LANES - SLOTS;
+
+/// A block of a vector in 32 bits, padded to a full register.
+pub type PaddedBlock = [f32; LANES];
 
 /// Block rows in one parallel piece; part of no result, a row is always summed alone.
 const ROWS_PER_PIECE: usize = 512;
@@ -21,7 +28,7 @@ const ROWS_PER_PIECE: usize = 512;
 #[derive(Clone, Debug)]
 pub struct BlockMatrix<T = f64> {
     pattern: Arc<BlockPattern>,
-    /// Row-major 5 × 5 blocks in the order of [`BlockPattern::columns`].
+    /// Column-major 5 × 5 blocks in the order of [`BlockPattern::columns`], and [`PADDING`] zeros.
     pub values: Vec<T>,
 }
 
@@ -38,7 +45,7 @@ pub struct RowChunk<'a, T = f64> {
 impl<T: Scalar> BlockMatrix<T> {
     /// The zero matrix.
     pub fn zeros(pattern: Arc<BlockPattern>) -> Self {
-        let values = vec![T::ZERO; pattern.block_count() * BLOCK];
+        let values = vec![T::ZERO; pattern.block_count() * BLOCK + PADDING];
         Self { pattern, values }
     }
 
@@ -130,12 +137,12 @@ impl<T: Scalar> BlockMatrix<T> {
     pub fn multiply(&self, x: &[T], out: &mut [T]) {
         assert!(x.len() == self.dimension() && out.len() == self.dimension());
         let x = x.as_chunks::<SLOTS>().0;
-        let blocks = self.blocks();
         let piece = |first_row: usize, out: &mut [T]| {
             let rows = &self.pattern.row_start()[first_row..];
             for (pair, out) in rows.windows(2).zip(out.as_chunks_mut::<SLOTS>().0) {
                 let columns = &self.pattern.columns()[pair[0]..pair[1]];
-                *out = row_times_vector(&blocks[pair[0]..pair[1]], columns, x);
+                let sums = row_times_vector(&self.values[pair[0] * BLOCK..], columns, x);
+                out.copy_from_slice(&sums[..SLOTS]);
             }
         };
         if self.rows() <= ROWS_PER_PIECE {
@@ -187,7 +194,7 @@ impl<T: Scalar> BlockMatrix<T> {
                     for c in 0..SLOTS {
                         if !(rows_free[r] && columns_free[c]) {
                             let on_diagonal = row == column as usize && r == c;
-                            block[r * SLOTS + c] = if on_diagonal { scale } else { T::ZERO };
+                            block[c * SLOTS + r] = if on_diagonal { scale } else { T::ZERO };
                         }
                     }
                 }
@@ -213,28 +220,45 @@ impl<T: Scalar> BlockMatrix<T> {
     }
 }
 
-/// One block row times a vector of blocks, each of which may be padded to `N` numbers.
-///
-/// All 25 products of a block go to sums of their own, which the compiler keeps in vector
-/// registers; the sums of a row are added up once, at its end.
+impl BlockMatrix<f32> {
+    /// `out = A x`, the vector rounded to 32 bits into `rounded`, one block a row; no vector is stored in between.
+    pub fn multiply_rounded(&self, x: &[f64], rounded: &mut [PaddedBlock], out: &mut [f64]) {
+        assert!(x.len() == self.dimension() && out.len() == self.dimension() && rounded.len() == self.rows());
+        rounded.par_chunks_mut(ROWS_PER_PIECE).zip(x.par_chunks(ROWS_PER_PIECE * SLOTS)).for_each(|(rounded, x)| {
+            for (to, from) in rounded.iter_mut().zip(x.as_chunks::<SLOTS>().0) {
+                for slot in 0..SLOTS {
+                    to[slot] = from[slot] as f32;
+                }
+            }
+        });
+        let rounded = &*rounded;
+        out.par_chunks_mut(ROWS_PER_PIECE * SLOTS).enumerate().for_each(|(index, out)| {
+            let rows = &self.pattern.row_start()[index * ROWS_PER_PIECE..];
+            for (pair, out) in rows.windows(2).zip(out.as_chunks_mut::<SLOTS>().0) {
+                let columns = &self.pattern.columns()[pair[0]..pair[1]];
+                let sums = row_times_vector(&self.values[pair[0] * BLOCK..], columns, rounded);
+                *out = std::array::from_fn(|slot| f64::from(sums[slot]));
+            }
+        });
+    }
+}
+
+/// One block row times a vector of blocks, each of which may be padded to `N` numbers. `entries` begin with the row's
+/// first block and go on for at least [`PADDING`] after its last; the sums after the first five mean nothing.
 #[inline(always)]
-pub(crate) fn row_times_vector<T: Scalar, const N: usize>(
-    blocks: &[[T; BLOCK]],
-    columns: &[u32],
-    x: &[[T; N]],
-) -> [T; SLOTS] {
-    let mut sums = [T::ZERO; BLOCK];
-    for (block, &column) in blocks.iter().zip(columns) {
+pub(crate) fn row_times_vector<T: Scalar, const N: usize>(entries: &[T], columns: &[u32], x: &[[T; N]]) -> [T; LANES] {
+    // Two sums, so that one need not wait for the other.
+    let mut sums = [[T::ZERO; LANES]; 2];
+    for (k, &column) in columns.iter().enumerate() {
+        let Some(block) = entries[k * BLOCK..].first_chunk::<{ BLOCK + PADDING }>() else { break };
         let v = &x[column as usize];
-        let repeated: [T; BLOCK] = std::array::from_fn(|k| v[k % SLOTS]);
-        for k in 0..BLOCK {
-            sums[k] = block[k].fused(repeated[k], sums[k]);
+        for c in 0..SLOTS {
+            for lane in 0..LANES {
+                sums[c % 2][lane] = block[c * SLOTS + lane].fused(v[c], sums[c % 2][lane]);
+            }
         }
     }
-    std::array::from_fn(|r| {
-        let s = &sums[r * SLOTS..(r + 1) * SLOTS];
-        (s[0] + s[1]) + (s[2] + s[3]) + s[4]
-    })
+    std::array::from_fn(|lane| sums[0][lane] + sums[1][lane])
 }
 
 fn halve<T: Scalar, S: Send>(

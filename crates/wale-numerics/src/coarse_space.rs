@@ -8,6 +8,7 @@ use crate::block_matrix::{BLOCK, BlockMatrix, SLOTS};
 use crate::block_pattern::BlockPattern;
 use crate::preconditioner::{InTwoHalves, Preconditioner};
 use crate::prolongation::Prolongation;
+use crate::scalar::Scalar;
 use crate::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -113,7 +114,7 @@ impl CoarseSpace {
     ///
     /// # Panics
     /// If the matrix is over another pattern.
-    pub fn factor(&mut self, matrix: &BlockMatrix) -> Result<f64, CholeskyError> {
+    pub fn factor<T: Scalar>(&mut self, matrix: &BlockMatrix<T>) -> Result<f64, CholeskyError> {
         self.project(matrix);
         let mut outcome = Ok(0.0);
         for shift in SHIFTS {
@@ -125,7 +126,7 @@ impl CoarseSpace {
         outcome
     }
 
-    fn project(&mut self, matrix: &BlockMatrix) {
+    fn project<T: Scalar>(&mut self, matrix: &BlockMatrix<T>) {
         assert_eq!(matrix.pattern().block_count(), self.pattern.block_count());
         let (prolongation, free) = (&self.prolongation, &self.free);
         let coarse_pattern = Arc::clone(self.matrix.pattern());
@@ -137,7 +138,7 @@ impl CoarseSpace {
             for (to, from) in coarse.iter_mut().zip(&piece.blocks) {
                 for r in 0..AXES {
                     for c in 0..AXES {
-                        to[r * SLOTS + c] += from[r * AXES + c];
+                        to[c * SLOTS + r] += from[r * AXES + c];
                     }
                 }
             }
@@ -203,9 +204,9 @@ impl Piece {
         }
     }
 
-    fn project(
+    fn project<T: Scalar>(
         &mut self,
-        matrix: &BlockMatrix,
+        matrix: &BlockMatrix<T>,
         prolongation: &Prolongation,
         free: &[u8],
         coarse_pattern: &BlockPattern,
@@ -256,7 +257,7 @@ impl Piece {
 
 impl RowSums {
     /// Sums the blocks of one row, each times the weights of its column.
-    fn collect(&mut self, matrix: &BlockMatrix, row: usize, prolongation: &Prolongation, free: &[u8]) {
+    fn collect<T: Scalar>(&mut self, matrix: &BlockMatrix<T>, row: usize, prolongation: &Prolongation, free: &[u8]) {
         self.nodes.clear();
         self.sums.clear();
         let pattern = matrix.pattern();
@@ -278,7 +279,7 @@ impl RowSums {
             let columns_free = axis_mask(free[column]);
             let entries: [f64; AXES * AXES] = std::array::from_fn(|k| {
                 let (r, c) = (k / AXES, k % AXES);
-                block[r * SLOTS + c] * rows_free[r] * columns_free[c]
+                block[c * SLOTS + r].to_f64() * rows_free[r] * columns_free[c]
             });
             for (&place, &weight) in places.iter().zip(weights) {
                 let sum = &mut self.sums[place];

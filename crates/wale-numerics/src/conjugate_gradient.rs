@@ -1,23 +1,41 @@
 //! Preconditioned conjugate gradients, stopped on the preconditioned residual.
 
-use crate::block_matrix::BlockMatrix;
+use crate::block_matrix::{BlockMatrix, PaddedBlock};
 use crate::preconditioner::Preconditioner;
 use crate::vector;
 
 /// A symmetric matrix, known by its product.
-pub trait LinearOperator: Sync {
+pub trait LinearOperator {
     /// Length of the vectors.
     fn dimension(&self) -> usize;
-    /// `out = A x`.
-    fn apply(&self, x: &[f64], out: &mut [f64]);
+    /// `out = A x`; may use scratch memory of its own.
+    fn apply(&mut self, x: &[f64], out: &mut [f64]);
 }
 
-impl LinearOperator for BlockMatrix {
+impl LinearOperator for &BlockMatrix {
     fn dimension(&self) -> usize {
         BlockMatrix::dimension(self)
     }
-    fn apply(&self, x: &[f64], out: &mut [f64]) {
+    fn apply(&mut self, x: &[f64], out: &mut [f64]) {
         self.multiply(x, out);
+    }
+}
+
+/// A matrix of 32 bits, which takes half the time to read, with memory to round vectors into.
+#[derive(Debug)]
+pub struct Single<'a> {
+    /// The matrix.
+    pub matrix: &'a BlockMatrix<f32>,
+    /// One block a row.
+    pub rounded: &'a mut [PaddedBlock],
+}
+
+impl LinearOperator for Single<'_> {
+    fn dimension(&self) -> usize {
+        self.matrix.dimension()
+    }
+    fn apply(&mut self, x: &[f64], out: &mut [f64]) {
+        self.matrix.multiply_rounded(x, self.rounded, out);
     }
 }
 
@@ -30,12 +48,23 @@ pub struct ConjugateGradientSettings {
     pub relative_tolerance: f64,
     /// Stop when `√(rᵀM⁻¹r)` has fallen to this value.
     pub absolute_tolerance: f64,
+    /// Do not stop before the last three updates of `x` were each at most this part of `x`, in Euclidean norm: a stiff
+    /// part of the residual may be gone long before `x` has moved along the soft one.
+    pub relative_update: f64,
+    /// Stop when the last three updates of `x` were each at most this, and the residual within three times its goal.
+    pub absolute_update: f64,
 }
 
 impl Default for ConjugateGradientSettings {
     /// Loose, as inside a Newton iteration.
     fn default() -> Self {
-        Self { max_iterations: 100, relative_tolerance: 0.1, absolute_tolerance: 0.0 }
+        Self {
+            max_iterations: 100,
+            relative_tolerance: 0.1,
+            absolute_tolerance: 0.0,
+            relative_update: f64::INFINITY,
+            absolute_update: 0.0,
+        }
     }
 }
 
@@ -65,6 +94,10 @@ pub struct ConjugateGradientReport {
     pub initial_residual: f64,
     /// `√(rᵀM⁻¹r)` at the end.
     pub final_residual: f64,
+    /// `|M⁻¹r|` at the start: what one application of the preconditioner would move `x` by.
+    pub initial_update: f64,
+    /// Largest norm of the last three updates of `x`.
+    pub last_update: f64,
 }
 
 /// Memory of the iteration, taken once.
@@ -109,7 +142,7 @@ impl ConjugateGradient {
     /// If a length differs from that of the memory.
     pub fn solve(
         &mut self,
-        matrix: &impl LinearOperator,
+        mut matrix: impl LinearOperator,
         preconditioner: &mut (impl Preconditioner + ?Sized),
         b: &[f64],
         x: &mut [f64],
@@ -137,14 +170,20 @@ impl ConjugateGradient {
         vector::copy(&self.preconditioned, &mut self.direction);
         let mut energy = vector::dot(&self.residual, &self.preconditioned);
         let initial_residual = energy.max(0.0).sqrt();
+        let initial_update = vector::norm(&self.preconditioned);
         let goal = (settings.relative_tolerance * initial_residual).max(settings.absolute_tolerance);
         let mut iterations = 0;
+        let mut updates = [f64::INFINITY; 3];
         let end = loop {
             if !(energy >= 0.0 && energy.is_finite()) {
                 break ConjugateGradientEnd::Breakdown;
             }
             self.history.push(energy.sqrt());
-            if energy.sqrt() <= goal {
+            let update = updates.iter().fold(0.0, |m: f64, &u| m.max(u));
+            let settled = settings.relative_update == f64::INFINITY
+                || iterations > 0 && update <= settings.relative_update * vector::norm(x);
+            let small = update <= settings.absolute_update && energy.sqrt() <= 3.0 * goal;
+            if energy == 0.0 || energy.sqrt() <= goal && settled || small {
                 break ConjugateGradientEnd::Converged;
             }
             if iterations == settings.max_iterations {
@@ -160,6 +199,7 @@ impl ConjugateGradient {
                 break ConjugateGradientEnd::NegativeCurvature;
             }
             let step = energy / curvature;
+            updates[iterations % 3] = step * vector::norm(&self.direction);
             vector::add_scaled(x, step, &self.direction);
             vector::add_scaled(&mut self.residual, -step, &self.product);
             preconditioner.apply(&self.residual, &mut self.preconditioned);
@@ -169,6 +209,8 @@ impl ConjugateGradient {
             vector::scale_and_add(&mut self.direction, energy / previous, &self.preconditioned);
             iterations += 1;
         };
-        ConjugateGradientReport { iterations, end, initial_residual, final_residual: energy.max(0.0).sqrt() }
+        let final_residual = energy.max(0.0).sqrt();
+        let last_update = updates[..iterations.min(3)].iter().fold(0.0, |m: f64, &u| m.max(u));
+        ConjugateGradientReport { iterations, end, initial_residual, final_residual, initial_update, last_update }
     }
 }

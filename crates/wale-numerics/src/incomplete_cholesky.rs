@@ -8,17 +8,15 @@
 //! factor: nearly free for the loose solves inside Newton. The number of domains follows from the
 //! size of the matrix alone, so results are the same on any thread count.
 
-use crate::block_matrix::{BLOCK, BlockMatrix, SLOTS, row_times_vector};
+use crate::block_matrix::{BLOCK, BlockMatrix, LANES, PADDING, PaddedBlock, SLOTS, row_times_vector};
 use crate::block_pattern::BlockPattern;
 use crate::preconditioner::Preconditioner;
+use crate::scalar::Scalar;
 use crate::small_block::{inverse_of_positive, product, subtract_product, transposed};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
-
-/// Numbers of a block of a vector, padded to a full register.
-const LANES: usize = 8;
 
 /// How to cut and how to go on when a pivot fails.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +36,7 @@ impl Default for IncompleteCholeskySettings {
         Self {
             rows_per_domain: 2048,
             max_domains: 32,
-            shifts: vec![0.0, 1e-3, 4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0],
+            shifts: vec![4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0],
             smallest_pivot: 1e-6,
         }
     }
@@ -78,9 +76,10 @@ struct Domain {
     first_row: usize,
     /// `M`.
     lower: Half,
-    /// `Mᵀ`: kept too, so that both sweeps gather along rows.
+    /// `Mᵀ`: kept too, so that both sweeps gather along rows; its rows lie in the order of the sweep, from the last.
     upper: Half,
-    inverse_diagonal: Vec<[f32; BLOCK]>,
+    /// Column-major blocks, and [`PADDING`].
+    inverse_diagonal: Vec<f32>,
     /// Place in the matrix of each lower block.
     source: Vec<u32>,
     /// Place in `upper` of the mirror image of each lower block.
@@ -89,16 +88,18 @@ struct Domain {
     /// What is left of the row being factored: its lower blocks, then its diagonal one.
     row: Vec<[f64; BLOCK]>,
     /// Solution of the forward sweep, then of both.
-    solution: Vec<[f32; LANES]>,
+    solution: Vec<PaddedBlock>,
     outcome: Result<f64, usize>,
 }
 
 /// The blocks on one side of the diagonal, by rows.
 #[derive(Clone, Debug)]
 struct Half {
+    backwards: bool,
     row_start: Vec<u32>,
     column: Vec<u32>,
-    blocks: Vec<[f32; BLOCK]>,
+    /// Column-major blocks, and [`PADDING`].
+    entries: Vec<f32>,
 }
 
 /// The rows in 64 bits that later ones may still need, in two rings.
@@ -136,7 +137,10 @@ impl IncompleteCholesky {
     ///
     /// # Panics
     /// If the matrix is over another pattern.
-    pub fn factor(&mut self, matrix: &BlockMatrix) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
+    pub fn factor<T: Scalar>(
+        &mut self,
+        matrix: &BlockMatrix<T>,
+    ) -> Result<IncompleteCholeskyReport, IncompleteCholeskyError> {
         assert_eq!(matrix.pattern().block_count(), self.pattern.block_count());
         let settings = &self.settings;
         self.domains.par_iter_mut().for_each(|domain| domain.factor(matrix, settings));
@@ -181,20 +185,27 @@ impl Preconditioner for IncompleteCholesky {
 }
 
 impl Half {
-    fn new() -> Self {
-        Self { row_start: vec![0], column: Vec::new(), blocks: Vec::new() }
+    fn new(backwards: bool) -> Self {
+        Self { backwards, row_start: vec![0], column: Vec::new(), entries: Vec::new() }
     }
 
     #[inline(always)]
     fn row(&self, row: usize) -> Range<usize> {
-        self.row_start[row] as usize..self.row_start[row + 1] as usize
+        let place = if self.backwards { self.row_start.len() - 2 - row } else { row };
+        self.row_start[place] as usize..self.row_start[place + 1] as usize
     }
 
     /// The sum of blocks times vectors over one row.
     #[inline(always)]
-    fn row_times(&self, row: usize, x: &[[f32; LANES]]) -> [f32; SLOTS] {
+    fn row_times(&self, row: usize, x: &[PaddedBlock]) -> PaddedBlock {
         let range = self.row(row);
-        row_times_vector(&self.blocks[range.clone()], &self.column[range], x)
+        row_times_vector(&self.entries[range.start * BLOCK..], &self.column[range], x)
+    }
+}
+
+fn write_block(entries: &mut [f32], place: usize, block: &[f64; BLOCK]) {
+    for (to, from) in entries[place * BLOCK..][..BLOCK].iter_mut().zip(block) {
+        *to = *from as f32;
     }
 }
 
@@ -207,8 +218,8 @@ impl Recent {
             let lowest = lower.column[lower.row(row)].first();
             first_needed = first_needed.min(lowest.map_or(row, |&c| c as usize));
             most_rows = most_rows.max(row + 1 - first_needed);
-            let places = upper.row_start[row + 1] - upper.row_start[first_needed];
-            most_places = most_places.max(places as usize);
+            let places = upper.row(first_needed).end - upper.row(row).start;
+            most_places = most_places.max(places);
         }
         let (rows, places) = (most_rows.max(1).next_power_of_two(), most_places.max(1).next_power_of_two());
         Self {
@@ -223,7 +234,7 @@ impl Recent {
 impl Domain {
     fn new(pattern: &BlockPattern, first_row: usize, end_row: usize) -> Self {
         let rows = end_row - first_row;
-        let (mut lower, mut upper) = (Half::new(), Half::new());
+        let (mut lower, mut upper) = (Half::new(false), Half::new(true));
         let mut source = Vec::new();
         for row in first_row..end_row {
             for position in pattern.row_start()[row]..pattern.row_start()[row + 1] {
@@ -231,15 +242,17 @@ impl Domain {
                 if (first_row..row).contains(&column) {
                     lower.column.push((column - first_row) as u32);
                     source.push(position as u32);
-                } else if (row + 1..end_row).contains(&column) {
-                    upper.column.push((column - first_row) as u32);
                 }
             }
             lower.row_start.push(lower.column.len() as u32);
+        }
+        for row in (first_row..end_row).rev() {
+            let above = pattern.row(row).iter().filter(|&&column| (row + 1..end_row).contains(&(column as usize)));
+            upper.column.extend(above.map(|&column| column - first_row as u32));
             upper.row_start.push(upper.column.len() as u32);
         }
         // Rows ascend, so the mirror images in one upper row are met in its own order.
-        let mut next = upper.row_start.clone();
+        let mut next: Vec<u32> = (0..rows).map(|row| upper.row(row).start as u32).collect();
         let mirror_of = |&column: &u32| {
             let place = &mut next[column as usize];
             *place += 1;
@@ -247,7 +260,7 @@ impl Domain {
         };
         let mirror = lower.column.iter().map(mirror_of).collect();
         for half in [&mut lower, &mut upper] {
-            half.blocks = vec![[0.0; BLOCK]; half.column.len()];
+            half.entries = vec![0.0; half.column.len() * BLOCK + PADDING];
         }
         let longest = (0..rows).map(|row| lower.row(row).len()).max();
         Self {
@@ -255,7 +268,7 @@ impl Domain {
             source,
             mirror,
             recent: Recent::new(&lower, &upper),
-            inverse_diagonal: vec![[0.0; BLOCK]; rows],
+            inverse_diagonal: vec![0.0; rows * BLOCK + PADDING],
             row: vec![[0.0; BLOCK]; longest.unwrap_or(0) + 1],
             solution: vec![[0.0; LANES]; rows],
             lower,
@@ -264,7 +277,7 @@ impl Domain {
         }
     }
 
-    fn factor(&mut self, matrix: &BlockMatrix, settings: &IncompleteCholeskySettings) {
+    fn factor<T: Scalar>(&mut self, matrix: &BlockMatrix<T>, settings: &IncompleteCholeskySettings) {
         for &shift in &settings.shifts {
             self.outcome = self.factor_shifted(matrix, shift, settings.smallest_pivot).map(|()| shift);
             if self.outcome.is_ok() {
@@ -273,15 +286,20 @@ impl Domain {
         }
     }
 
-    fn factor_shifted(&mut self, matrix: &BlockMatrix, shift: f64, smallest_pivot: f64) -> Result<(), usize> {
-        for row in 0..self.inverse_diagonal.len() {
+    fn factor_shifted<T: Scalar>(
+        &mut self,
+        matrix: &BlockMatrix<T>,
+        shift: f64,
+        smallest_pivot: f64,
+    ) -> Result<(), usize> {
+        for row in 0..self.solution.len() {
             let global = self.first_row + row;
-            let diagonal = &matrix.blocks()[matrix.pattern().diagonal_position(global)];
+            let diagonal = matrix.blocks()[matrix.pattern().diagonal_position(global)].map(T::to_f64);
             let range = self.lower.row(row);
             for (to, &source) in self.row.iter_mut().zip(&self.source[range.clone()]) {
-                *to = matrix.blocks()[source as usize];
+                *to = transposed(&matrix.blocks()[source as usize].map(T::to_f64));
             }
-            self.row[range.len()] = *diagonal;
+            self.row[range.len()] = diagonal;
             self.eliminate(row);
             let remains = &mut self.row[range.len()];
             let mut kept = true;
@@ -292,7 +310,7 @@ impl Domain {
             let inverse = if kept { inverse_of_positive(remains, smallest_pivot) } else { None };
             let inverse = inverse.ok_or(global)?;
             self.recent.diagonal[row & self.recent.diagonal_mask] = inverse;
-            self.inverse_diagonal[row] = inverse.map(|v| v as f32);
+            write_block(&mut self.inverse_diagonal, row, &inverse);
         }
         Ok(())
     }
@@ -311,8 +329,9 @@ impl Domain {
             let factor = product(remains, inverse);
             let image = transposed(remains);
             self.recent.upper[mirror & mask] = image;
-            self.lower.blocks[range.start + k] = factor.map(|v| v as f32);
-            self.upper.blocks[mirror] = transposed(&factor).map(|v| v as f32);
+            // Column by column the mirror image is the factor row by row.
+            write_block(&mut self.lower.entries, range.start + k, &transposed(&factor));
+            write_block(&mut self.upper.entries, mirror, &factor);
             // The columns after this one that the row above has too; last of all the mirror
             // image itself, which meets the diagonal.
             let later = &columns[k + 1..];
@@ -331,24 +350,26 @@ impl Domain {
     }
 
     fn solve<const ADD: bool>(&mut self, residual: &[f64], out: &mut [f64]) {
-        let rows = self.inverse_diagonal.len();
+        let rows = self.solution.len();
         let residual = &residual.as_chunks::<SLOTS>().0[..rows];
         for row in 0..rows {
             let known = self.lower.row_times(row, &self.solution);
-            for r in 0..SLOTS {
-                self.solution[row][r] = residual[row][r] as f32 - known[r];
+            let mut right: PaddedBlock = [0.0; LANES];
+            for slot in 0..SLOTS {
+                right[slot] = residual[row][slot] as f32;
             }
+            self.solution[row] = std::array::from_fn(|lane| right[lane] - known[lane]);
         }
         let out = &mut out.as_chunks_mut::<SLOTS>().0[..rows];
         for row in (0..rows).rev() {
             let forward = [self.solution[row]];
-            let scaled = row_times_vector(&[self.inverse_diagonal[row]], &[0], &forward);
+            let scaled = row_times_vector(&self.inverse_diagonal[row * BLOCK..], &[0], &forward);
             let known = self.upper.row_times(row, &self.solution);
-            for r in 0..SLOTS {
-                let x = scaled[r] - known[r];
-                self.solution[row][r] = x;
-                let value = f64::from(x);
-                out[row][r] = if ADD { out[row][r] + value } else { value };
+            let x: PaddedBlock = std::array::from_fn(|lane| scaled[lane] - known[lane]);
+            self.solution[row] = x;
+            for slot in 0..SLOTS {
+                let value = f64::from(x[slot]);
+                out[row][slot] = if ADD { out[row][slot] + value } else { value };
             }
         }
     }

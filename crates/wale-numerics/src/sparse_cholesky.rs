@@ -213,7 +213,7 @@ impl SparseCholesky {
                     for &other in slots_of(&self.slots, &self.slot_start, column) {
                         if other >= slot {
                             let factor = if other == slot { diagonal_factor } else { 1.0 };
-                            let value = block[r * SLOTS + other as usize % SLOTS] * factor;
+                            let value = block[other as usize % SLOTS * SLOTS + r] * factor;
                             finite &= value.is_finite();
                             values[next] = value;
                             next += 1;

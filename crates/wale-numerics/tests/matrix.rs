@@ -52,7 +52,7 @@ fn row_chunks_write_what_a_plain_loop_writes() {
         }
     });
     assert_eq!(plain.values, chunked.values);
-    assert_eq!(written.iter().sum::<usize>(), plain.values.len());
+    assert_eq!(written.iter().sum::<usize>(), plain.blocks().as_flattened().len());
 
     let mut split = BlockMatrix::<f64>::zeros(pattern);
     for mut chunk in split.split_rows(&bounds) {
@@ -78,7 +78,7 @@ fn fixed_slots_leave_the_system() {
             let column = column as usize;
             let (new, old) = (matrix.block(row, column).unwrap(), before.block(row, column).unwrap());
             for k in 0..BLOCK {
-                let (r, c) = (row * SLOTS + k / SLOTS, column * SLOTS + k % SLOTS);
+                let (r, c) = (row * SLOTS + k % SLOTS, column * SLOTS + k / SLOTS);
                 let expected = match (free[r] && free[c], r == c) {
                     (true, _) => old[k],
                     (false, true) => 2.5,

@@ -16,7 +16,7 @@ use wale_numerics::prolongation::Prolongation;
 use wale_numerics::sparse_cholesky::{BlockOrder, SparseCholesky};
 
 fn settings(tolerance: f64) -> ConjugateGradientSettings {
-    ConjugateGradientSettings { max_iterations: 3000, relative_tolerance: tolerance, absolute_tolerance: 0.0 }
+    ConjugateGradientSettings { max_iterations: 3000, relative_tolerance: tolerance, ..Default::default() }
 }
 
 fn direct(matrix: &BlockMatrix, free: &[bool], b: &[f64]) -> Vec<f64> {
@@ -153,7 +153,7 @@ fn chain(rows: usize) -> BlockMatrix {
             for (b, column) in [i, i + 1].into_iter().enumerate() {
                 let block = matrix.block_mut(row, column).unwrap();
                 for k in 0..SLOTS * SLOTS {
-                    block[k] += g[a * SLOTS + k / SLOTS] * g[b * SLOTS + k % SLOTS];
+                    block[k] += g[a * SLOTS + k % SLOTS] * g[b * SLOTS + k / SLOTS];
                 }
             }
         }

@@ -46,12 +46,19 @@ fn run(path: &str, until: f64) -> Result<(), Box<dyn std::error::Error>> {
         before.step()?;
     }
     let nodes = before.network().node_count();
+    let radius = scene.yarn.radius;
     println!("{path}: {nodes} nodes, one step from {:.3} s; errors in yarn radii", before.state().time);
     println!("                         0.001            0.03                 0.1                 0.3");
     println!("iterations      mean   largest      mean   largest      mean   largest      mean   largest");
     let mut reference = simulation(Some(TO_THE_END), LinearSolver::ConjugateGradient, 1e-3);
     reference.restore(before.state().clone());
     reference.step()?;
+    let error = |other: &Simulation| {
+        let (a, b) = (reference.frame(), other.frame());
+        let errors = a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance_squared(*b));
+        let (sum, largest) = errors.fold((0.0, 0.0f64), |(sum, largest), e| (sum + e, largest.max(e)));
+        ((sum / nodes as f64).sqrt() / radius, largest.sqrt() / radius)
+    };
     for iterations in [1, 2, 3, 4, 5, 6, 8, 10, 15] {
         print!("{iterations:10}");
         for (solver, tolerance) in [
@@ -63,18 +70,23 @@ fn run(path: &str, until: f64) -> Result<(), Box<dyn std::error::Error>> {
             let mut other = simulation(Some(iterations), solver, tolerance);
             other.restore(before.state().clone());
             other.step()?;
-            let (a, b) = (reference.frame(), other.frame());
             let same = (reference.state().time - other.state().time).abs() < 1e-12;
-            let errors = a.positions.iter().zip(&b.positions).map(|(a, b)| a.distance_squared(*b));
-            let (sum, largest) = errors.fold((0.0, 0.0f64), |(sum, largest), e| (sum + e, largest.max(e)));
-            let radius = scene.yarn.radius;
             if same {
-                print!("  {:8.1e}  {:8.1e}", (sum / nodes as f64).sqrt() / radius, largest.sqrt() / radius);
+                let (mean, largest) = error(&other);
+                print!("  {mean:8.1e}  {largest:8.1e}");
             } else {
                 print!("    (rejected)      ");
             }
         }
         println!();
     }
+    let mut own = simulation(None, LinearSolver::ConjugateGradient, 0.0);
+    own.restore(before.state().clone());
+    let report = own.step()?;
+    let (mean, largest) = error(&own);
+    println!(
+        "as it ends by itself: {mean:.1e} {largest:.1e} after {} iterations, {} linear",
+        report.newton_iterations, report.linear_iterations
+    );
     Ok(())
 }

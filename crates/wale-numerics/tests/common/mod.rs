@@ -32,7 +32,7 @@ fn add_spring(matrix: &mut BlockMatrix, pair: [usize; 2], stiffness: f64, g: &[f
             let block = matrix.block_mut(row, column).unwrap();
             for r in 0..SLOTS {
                 for c in 0..SLOTS {
-                    block[r * SLOTS + c] += stiffness * g[a * SLOTS + r] * g[b * SLOTS + c];
+                    block[c * SLOTS + r] += stiffness * g[a * SLOTS + r] * g[b * SLOTS + c];
                 }
             }
         }
@@ -135,7 +135,7 @@ pub fn dense(matrix: &BlockMatrix) -> Vec<Vec<f64>> {
             let block: &[f64; BLOCK] = matrix.block(row, column as usize).unwrap();
             for r in 0..SLOTS {
                 for c in 0..SLOTS {
-                    full[row * SLOTS + r][column as usize * SLOTS + c] = block[r * SLOTS + c];
+                    full[row * SLOTS + r][column as usize * SLOTS + c] = block[c * SLOTS + r];
                 }
             }
         }

@@ -6,17 +6,26 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 /// Finds pairs of nodes by cells of a grid; keeps its memory.
+///
+/// It looks further than it was asked to, and looks again only when nodes have moved against each other by as much; what
+/// it finds does not depend on when it looked.
 #[derive(Clone, Debug, Default)]
 pub struct Nearby {
+    /// Where the nodes were when it looked last, how far it looked, and what it found.
+    places: Vec<DVec3>,
+    looked: f64,
+    candidates: Vec<[u32; 2]>,
     /// Cell and node, sorted.
     cells: Vec<(u64, u32)>,
-    /// Pairs by node, and the pairs found last.
+    /// Pairs by node, and the pairs given last.
     by_node: Vec<Vec<u32>>,
     pairs: Vec<[u32; 2]>,
     /// First of each cell's nodes.
     start: HashMap<u64, u32>,
 }
 
+/// How much further than asked it looks.
+const FURTHER: f64 = 1.4;
 /// Bits of a cell's number along one axis.
 const BITS: u32 = 21;
 
@@ -30,8 +39,31 @@ impl Nearby {
         reach: f64,
         apart: f64,
     ) -> &[[u32; 2]] {
+        if self.places.len() != layout.len() || reach + 2.0 * self.moved(&now) > self.looked {
+            self.looked = FURTHER * reach;
+            self.look(&now, layout, apart);
+            self.places.clear();
+            self.places.extend((0..layout.len()).map(&now));
+        }
+        self.pairs.clear();
+        let near = |pair: &&[u32; 2]| now(pair[0] as usize).distance_squared(now(pair[1] as usize)) < reach * reach;
+        self.pairs.extend(self.candidates.iter().filter(near));
+        &self.pairs
+    }
+
+    /// The furthest that a node has moved since the last look against the mean of all \[m\].
+    fn moved(&self, now: &(impl Fn(usize) -> DVec3 + Sync)) -> f64 {
+        let count = self.places.len();
+        let mean = (0..count).map(|k| now(k) - self.places[k]).sum::<DVec3>() / count.max(1) as f64;
+        let squares = self.places.par_iter().with_min_len(4096).enumerate();
+        squares.map(|(k, place)| (now(k) - *place - mean).length_squared()).reduce(|| 0.0, f64::max).sqrt()
+    }
+
+    /// Finds the candidates.
+    fn look(&mut self, now: &(impl Fn(usize) -> DVec3 + Sync), layout: &[DVec3], apart: f64) {
+        let reach = self.looked;
         let count = layout.len();
-        let origin = (0..count).map(&now).fold(DVec3::INFINITY, DVec3::min);
+        let origin = (0..count).map(now).fold(DVec3::INFINITY, DVec3::min);
         let cell_of = |x: DVec3| ((x - origin) / reach).floor().as_u64vec3() + 1;
         let key = |x: u64, y: u64, z: u64| {
             let mask = (1 << BITS) - 1;
@@ -73,11 +105,10 @@ impl Nearby {
             }
             found.sort_unstable();
         });
-        self.pairs.clear();
+        self.candidates.clear();
         for (a, found) in self.by_node.iter().enumerate() {
-            self.pairs.extend(found.iter().map(|&b| [a as u32, b]));
+            self.candidates.extend(found.iter().map(|&b| [a as u32, b]));
         }
-        &self.pairs
     }
 }
 
@@ -110,6 +141,13 @@ mod tests {
         for _ in 0..2 {
             assert_eq!(nearby.find(|k| rolled[k], &layout, 0.8, 3.0), all);
         }
+        // Moved as a whole, a little, and far.
+        let shift = DVec3::new(5.0, -2.0, 1.0);
+        assert_eq!(nearby.find(|k| rolled[k] + shift, &layout, 0.8, 3.0), all);
+        let near = |k: usize| rolled[k] * 0.6;
+        let mut fresh = Nearby::default();
+        assert_eq!(nearby.find(near, &layout, 0.8, 3.0), fresh.find(near, &layout, 0.8, 3.0));
+        assert_ne!(fresh.pairs, all);
         assert!(nearby.find(|k| layout[k], &layout, 0.8, 3.0).is_empty());
     }
 }

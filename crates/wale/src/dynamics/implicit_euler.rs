@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use thiserror::Error;
-use wale_numerics::block_matrix::BlockMatrix;
+use wale_numerics::vector;
 
-use super::linear::{Coupling, Linear, LinearReport, LinearSettings};
+use super::linear::{Coupling, Linear, LinearError, LinearReport, LinearSettings};
 use super::system::{System, Workspace};
 use crate::fabric::coordinates::BLOCK;
 
@@ -53,24 +53,45 @@ pub enum StepError {
 }
 
 /// How much further than the root mean square a single node may move in the last iteration.
-const SINGLE_NODE: f64 = 10.0;
+const SINGLE_NODE: f64 = 20.0;
 /// Convexity of a step's first matrix: a tenth of the convex one makes most of them positive definite.
 const FIRST_CONVEXITY: f64 = 0.1;
 /// Convexity below which the exact matrix is tried.
 const LEAST_CONVEXITY: f64 = 0.05;
+/// Part of a move that may be left for the matrix to serve once more.
+const KEEP_MATRIX: f64 = 0.1;
+/// Parts of the tolerance within which the linear solver's updates are to settle.
+const CLOSE: f64 = 0.1;
+/// Updates as large as the last that conjugate gradients would still have made, about.
+const UNSETTLED: f64 = 5.0;
 /// Most halvings of a step that does not lower the energy.
 const MOST_HALVINGS: usize = 30;
 
+/// What is left to go after a move.
+#[derive(Clone, Copy)]
+struct Left {
+    /// As a part of the move.
+    ratio: f64,
+    /// Moves of the nodes, root mean square and largest \[m\].
+    mean: f64,
+    largest: f64,
+}
+
+impl Left {
+    const ALL: Self = Self { ratio: 1.0, mean: f64::INFINITY, largest: f64::INFINITY };
+}
+
 /// Memory that Newton's method keeps between steps.
 pub struct Newton {
-    matrix: BlockMatrix,
     couplings: Vec<Coupling>,
     gradient: Vec<f64>,
     direction: Vec<f64>,
     trial: Vec<f64>,
+    estimate: Vec<f64>,
     /// Which slots are unknowns.
     free: Vec<bool>,
-    linear: Linear,
+    /// Taken when a step first needs it, and anew when other slots are free.
+    linear: Option<Linear>,
     linear_settings: LinearSettings,
     /// Convexity of the next matrix.
     convexity: f64,
@@ -84,13 +105,13 @@ impl Newton {
     pub fn new(system: &System, linear_settings: LinearSettings) -> Self {
         let n = system.coordinates.len();
         Self {
-            matrix: BlockMatrix::zeros(system.pattern().clone()),
             couplings: Vec::new(),
             gradient: vec![0.0; n],
             direction: vec![0.0; n],
             trial: vec![0.0; n],
+            estimate: vec![0.0; n],
             free: system.coordinates.free().to_vec(),
-            linear: Linear::None,
+            linear: None,
             linear_settings,
             convexity: FIRST_CONVEXITY,
             work: Workspace::default(),
@@ -100,14 +121,14 @@ impl Newton {
     /// Name of the linear solver in use.
     #[must_use]
     pub fn solver_name(&self) -> &'static str {
-        self.linear.name()
+        self.linear.as_ref().map_or("none", Linear::name)
     }
 
     /// Says which slots are unknowns; the rest keep their values.
     pub fn set_free(&mut self, free: &[bool]) {
         if self.free != free {
             self.free.copy_from_slice(free);
-            self.linear = Linear::None;
+            self.linear = None;
         }
     }
 
@@ -123,14 +144,37 @@ impl Newton {
         settings: &NewtonSettings,
         mut renew: impl FnMut(&mut System, &[f64]),
     ) -> Result<NewtonReport, StepError> {
+        let mut linear = match self.linear.take() {
+            Some(linear) => linear,
+            None => Linear::new(system, &self.free, self.linear_settings).map_err(failed)?,
+        };
+        let report = self.descend(system, &mut linear, q, settings, &mut renew);
+        self.linear = Some(linear);
+        report
+    }
+
+    fn descend(
+        &mut self,
+        system: &mut System,
+        linear: &mut Linear,
+        q: &mut [f64],
+        settings: &NewtonSettings,
+        renew: &mut impl FnMut(&mut System, &[f64]),
+    ) -> Result<NewtonReport, StepError> {
         let mut report = NewtonReport { last_move: f64::INFINITY, ..NewtonReport::default() };
-        let mut previous = 0.0;
+        let node_count = system.coordinates.node_count();
+        let close = CLOSE * settings.tolerance * (node_count as f64).sqrt();
         // Every step starts alike, whatever came before: a resumed run must find the same bits.
         self.convexity = FIRST_CONVEXITY;
         renew(system, q);
-        let mut energy = self.linearise(system, q)?;
+        let mut energy = self.linearise(system, linear, q)?;
+        let mut fresh = true;
+        // The gradient alone is asked for first where it may be all that is needed.
+        let mut gradient_first = true;
         while report.iterations < settings.max_iterations {
-            let solved = self.solve(system, q)?;
+            // The first solve of a step is what moves the fabric as a whole: it is not to end with small updates.
+            let enough = if report.iterations == 0 { 0.0 } else { close };
+            let solved = self.solve(system, linear, q, fresh, enough)?;
             report.linear_iterations += solved.iterations;
             report.iterations += 1;
             let slope: f64 = self.direction.iter().zip(&self.gradient).map(|(d, g)| d * g).sum();
@@ -138,33 +182,21 @@ impl Newton {
                 return Err(StepError::NotFinite);
             }
             let mut length = system.longest_step(q, &self.direction);
-            let (mean, largest) = moves(&self.direction, system.coordinates.node_count());
-            // What is left after this move shrinks as fast as the moves do [Hairer1996, section IV.8], and is not less
-            // than what the linear solve left.
             let whole = length == 1.0 && !solved.negative_curvature;
-            let ratio = if whole { mean / previous } else { 1.0 };
-            let left = if ratio < 0.5 { (ratio / (1.0 - ratio)).max(self.linear_settings.tolerance) } else { 1.0 };
-            previous = mean;
-            if !solved.negative_curvature
-                && left * mean <= settings.tolerance
-                && left * largest <= SINGLE_NODE * settings.tolerance
-            {
-                self.try_length(q, length);
-                q.copy_from_slice(&self.trial);
-                report.last_move = length * largest;
-                report.converged = true;
-                break;
-            }
-            // A whole step nearly always lowers the energy: linearise there at once, instead of asking first.
+            let (mean, largest) = moves(&self.direction, node_count);
             self.try_length(q, length);
             renew(system, &self.trial);
-            let trial = std::mem::take(&mut self.trial);
-            let mut new = self.linearise(system, &trial);
-            self.trial = trial;
+            gradient_first &= whole;
+            let mut new = self.look(system, linear, !gradient_first);
             // Differences below round-off of the total say nothing.
             let noise = 1e-13 * energy.abs() + 1e-30;
             let low = |energy_there: f64, length: f64| energy_there <= energy + 1e-4 * length * slope + noise;
-            if !new.as_ref().is_ok_and(|&new| low(new, length)) {
+            let mut left = Left::ALL;
+            if new.as_ref().is_ok_and(|&new| low(new, length)) {
+                if whole {
+                    left = self.left(linear, &solved, node_count);
+                }
+            } else {
                 let mut shorter = 0;
                 loop {
                     length *= 0.5;
@@ -181,37 +213,80 @@ impl Newton {
                 }
                 report.backtracks += shorter;
                 self.more_convex();
-                let trial = std::mem::take(&mut self.trial);
-                new = self.linearise(system, &trial);
-                self.trial = trial;
+                gradient_first = false;
+                new = self.look(system, linear, true);
             }
             energy = new?;
             q.copy_from_slice(&self.trial);
             report.last_move = length * largest;
+            let within =
+                |mean: f64, largest: f64| mean <= settings.tolerance && largest <= SINGLE_NODE * settings.tolerance;
+            if whole && within(left.mean.min(mean), left.largest.min(largest)) {
+                report.converged = true;
+                break;
+            }
+            let stands = left.ratio < KEEP_MATRIX;
+            if gradient_first && !stands && report.iterations < settings.max_iterations {
+                self.linearise(system, linear, q)?;
+            }
+            fresh = !(gradient_first && stands);
+            gradient_first = stands;
         }
         Ok(report)
     }
 
+    /// Energy and gradient at the trial, and the matrix if wanted.
+    fn look(&mut self, system: &System, linear: &mut Linear, with_matrix: bool) -> Result<f64, StepError> {
+        let trial = std::mem::take(&mut self.trial);
+        let energy = if with_matrix {
+            self.linearise(system, linear, &trial)
+        } else {
+            let energy = system.gradient(&trial, &mut self.gradient, &mut self.work);
+            if energy.is_finite() { Ok(energy) } else { Err(StepError::NotFinite) }
+        };
+        self.trial = trial;
+        energy
+    }
+
+    /// What is left to go after a whole move: what the preconditioner makes of the gradient there, a series that shrinks
+    /// as it shrank from what it made of the gradient before, and what the linear solver did not wait for.
+    fn left(&mut self, linear: &mut Linear, solved: &LinearReport, node_count: usize) -> Left {
+        for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
+            *d = if *free { -g } else { 0.0 };
+        }
+        linear.approximate(&self.direction, &mut self.estimate);
+        let ratio = vector::norm(&self.estimate) / solved.approximate;
+        if ratio.is_nan() || ratio >= 1.0 {
+            return Left::ALL;
+        }
+        let (mean, largest) = moves(&self.estimate, node_count);
+        let unsettled = UNSETTLED * solved.last_update / (node_count.max(1) as f64).sqrt();
+        Left { ratio, mean: mean / (1.0 - ratio) + unsettled, largest }
+    }
+
     /// Gradient and matrix at `q`; returns the energy.
-    fn linearise(&mut self, system: &System, q: &[f64]) -> Result<f64, StepError> {
-        let energy = system.linearise(q, self.convexity, &mut self.gradient, &mut self.matrix, &mut self.work);
+    fn linearise(&mut self, system: &System, linear: &mut Linear, q: &[f64]) -> Result<f64, StepError> {
+        let energy = linear.linearise(system, q, self.convexity, &mut self.gradient, &mut self.work);
         system.active_self_contacts(q, &self.free, &mut self.couplings);
         if energy.is_finite() { Ok(energy) } else { Err(StepError::NotFinite) }
     }
 
-    /// Finds the search direction from gradient and matrix at `q`: of the exact matrix where it is positive definite, else
-    /// of one more convex.
-    fn solve(&mut self, system: &System, q: &[f64]) -> Result<LinearReport, StepError> {
-        let failed = |error: super::linear::LinearError| StepError::Linear(error.to_string());
-        if matches!(self.linear, Linear::None) {
-            self.linear = Linear::new(system, &self.free, self.linear_settings).map_err(failed)?;
-        }
+    /// Finds the search direction from the gradient at `q` and the matrix there if it is fresh (the exact one where that
+    /// is positive definite, else one more convex), or the one before.
+    fn solve(
+        &mut self,
+        system: &System,
+        linear: &mut Linear,
+        q: &[f64],
+        mut fresh: bool,
+        close: f64,
+    ) -> Result<LinearReport, StepError> {
         loop {
             for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
                 *d = if *free { -g } else { 0.0 };
             }
-            self.matrix.fix_slots(&self.free, 1.0);
-            match self.linear.solve(&self.matrix, &self.couplings, &mut self.direction) {
+            let factored = if fresh { linear.factor(&self.free) } else { Ok(()) };
+            match factored.and_then(|()| linear.solve(&self.couplings, &mut self.direction, close)) {
                 Ok(report) if report.negative_curvature => {
                     self.more_convex();
                     return Ok(report);
@@ -223,7 +298,8 @@ impl Newton {
                 Err(error) if self.convexity >= 1.0 => return Err(failed(error)),
                 Err(_) => {
                     self.more_convex();
-                    self.linearise(system, q)?;
+                    self.linearise(system, linear, q)?;
+                    fresh = true;
                 }
             }
         }
@@ -249,8 +325,12 @@ impl Newton {
     /// Bytes of matrix and vectors.
     #[must_use]
     pub fn bytes(&self) -> usize {
-        (self.matrix.values.len() + 3 * self.gradient.len()) * size_of::<f64>()
+        self.linear.as_ref().map_or(0, Linear::bytes) + 4 * size_of_val(&self.gradient[..])
     }
+}
+
+fn failed(error: LinearError) -> StepError {
+    StepError::Linear(error.to_string())
 }
 
 /// Moves of the nodes in a global vector: root mean square and largest \[m\].

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::block_pattern::BlockPattern;
 
-use super::terms::{AnyTerm, ChunkOutput, Chunks, Term};
+use super::terms::{AnyTerm, ChunkOutput, Chunks, Term, Width};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing,
@@ -269,12 +269,12 @@ impl System {
 
     /// Energy \[J\], gradient, and a matrix of second derivatives between the exact (`convexity = 0`) and the positive
     /// semi-definite one (`convexity = 1`).
-    pub fn linearise(
+    pub fn linearise<T: Width>(
         &self,
         q: &[f64],
         convexity: f64,
         gradient: &mut [f64],
-        matrix: &mut BlockMatrix,
+        matrix: &mut BlockMatrix<T>,
         work: &mut Workspace,
     ) -> f64 {
         work.prepare(&self.chunks);
@@ -284,7 +284,7 @@ impl System {
             let mut out = ChunkOutput {
                 rows: self.chunks.rows(work.chunk),
                 gradient: &mut work.gradient,
-                matrix: Some(&mut rows),
+                matrix: Some(T::rows(&mut rows)),
             };
             work.energy = self.terms().iter().map(|term| term.accumulate(work.chunk, q, convexity, &mut out)).sum();
         });

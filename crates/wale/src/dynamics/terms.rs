@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use wale_numerics::block_matrix::RowChunk;
 use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::check::Local;
+use wale_numerics::scalar::Scalar;
 
 use crate::energy::Element;
 use crate::fabric::coordinates::{BLOCK, Dof};
@@ -63,7 +64,33 @@ pub struct ChunkOutput<'a, 'm> {
     /// Their part of the gradient, five slots a row.
     pub gradient: &'a mut [f64],
     /// Their part of the matrix, if wanted.
-    pub matrix: Option<&'a mut RowChunk<'m>>,
+    pub matrix: Option<MatrixRows<'a, 'm>>,
+}
+
+/// Rows of a matrix of either width.
+pub enum MatrixRows<'a, 'm> {
+    /// Of 32 bits.
+    Single(&'a mut RowChunk<'m, f32>),
+    /// Of 64 bits.
+    Double(&'a mut RowChunk<'m, f64>),
+}
+
+/// A width that terms can write.
+pub trait Width: Scalar {
+    /// Rows of this width.
+    fn rows<'a, 'm>(rows: &'a mut RowChunk<'m, Self>) -> MatrixRows<'a, 'm>;
+}
+
+impl Width for f32 {
+    fn rows<'a, 'm>(rows: &'a mut RowChunk<'m, Self>) -> MatrixRows<'a, 'm> {
+        MatrixRows::Single(rows)
+    }
+}
+
+impl Width for f64 {
+    fn rows<'a, 'm>(rows: &'a mut RowChunk<'m, Self>) -> MatrixRows<'a, 'm> {
+        MatrixRows::Double(rows)
+    }
 }
 
 /// Place of a block that an element leaves zero.
@@ -153,6 +180,41 @@ impl<E: Element<N>, const N: usize> Term<E, N> {
     }
 }
 
+impl<E: Element<N>, const N: usize> Term<E, N> {
+    /// Visits every element that touches a chunk; the sum of the values of those it owns.
+    fn sum(&self, chunk: usize, mut visit: impl FnMut(usize) -> f64) -> f64 {
+        let (list, own) = &self.lists[chunk];
+        let mut energy = 0.0;
+        for (k, &index) in list.iter().enumerate() {
+            let value = visit(index as usize);
+            if k < *own {
+                energy += value;
+            }
+        }
+        energy
+    }
+
+    fn linearise<T: Scalar>(
+        &self,
+        chunk: usize,
+        q: &[f64],
+        convexity: f64,
+        rows: &Range<usize>,
+        gradient: &mut [f64],
+        matrix: &mut RowChunk<'_, T>,
+    ) -> f64 {
+        self.sum(chunk, |index| {
+            let stencil = &self.set.stencils[index];
+            let mut local = Local::zero();
+            self.set.elements[index].add_blended(&self.set.local(index, q), convexity, &mut local);
+            scatter_gradient(stencil, &local.gradient, rows, gradient);
+            let places = &self.places[self.first_place[index] as usize..];
+            scatter_hessian(stencil, &local.hessian, rows, places, matrix);
+            local.energy
+        })
+    }
+}
+
 /// Most parts of an element.
 const MOST_PARTS: usize = 4;
 
@@ -200,33 +262,16 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
     }
 
     fn accumulate(&self, chunk: usize, q: &[f64], convexity: f64, out: &mut ChunkOutput<'_, '_>) -> f64 {
-        let (list, own) = &self.lists[chunk];
-        let mut energy = 0.0;
-        for (k, &index) in list.iter().enumerate() {
-            let index = index as usize;
-            let local_q = self.set.local(index, q);
-            let stencil = &self.set.stencils[index];
-            let element = &self.set.elements[index];
-            let value = match &mut out.matrix {
-                None => {
-                    let (value, gradient) = element.gradient(&local_q);
-                    scatter_gradient(stencil, &gradient, &out.rows, out.gradient);
-                    value
-                }
-                Some(matrix) => {
-                    let mut local = Local::zero();
-                    element.add_blended(&local_q, convexity, &mut local);
-                    scatter_gradient(stencil, &local.gradient, &out.rows, out.gradient);
-                    let places = &self.places[self.first_place[index] as usize..];
-                    scatter_hessian(stencil, &local.hessian, &out.rows, places, matrix);
-                    local.energy
-                }
-            };
-            if k < *own {
-                energy += value;
-            }
+        let (rows, gradient) = (&out.rows, &mut *out.gradient);
+        match &mut out.matrix {
+            None => self.sum(chunk, |index| {
+                let (value, by_local) = self.set.elements[index].gradient(&self.set.local(index, q));
+                scatter_gradient(&self.set.stencils[index], &by_local, rows, gradient);
+                value
+            }),
+            Some(MatrixRows::Single(matrix)) => self.linearise(chunk, q, convexity, rows, gradient, matrix),
+            Some(MatrixRows::Double(matrix)) => self.linearise(chunk, q, convexity, rows, gradient, matrix),
         }
-        energy
     }
 
     fn pairs(&self, pair: &mut dyn FnMut(u32, u32)) {
@@ -289,12 +334,12 @@ fn scatter_gradient<const N: usize>(stencil: &[Dof; N], local: &[f64; N], rows: 
     }
 }
 
-fn scatter_hessian<const N: usize>(
+fn scatter_hessian<T: Scalar, const N: usize>(
     stencil: &[Dof; N],
     local: &[[f64; N]; N],
     rows: &Range<usize>,
     places: &[u32],
-    matrix: &mut RowChunk<'_>,
+    matrix: &mut RowChunk<'_, T>,
 ) {
     let (runs, count) = runs(stencil);
     let slots: [usize; N] = std::array::from_fn(|i| stencil[i] as usize % BLOCK);
@@ -307,22 +352,23 @@ fn scatter_hessian<const N: usize>(
             if place == NOWHERE {
                 continue;
             }
+            // Columns of a block are its mirror image's rows.
             let block = matrix.block_at(place as usize).as_chunks_mut::<BLOCK>().0;
-            let (across, last) = (column.start, column.end - 1);
+            let (first, last) = (row.start, row.end - 1);
             // Nearly always a whole position, with or without one arc length: short loops of known length.
-            let position = slots[across] == 0 && (column.end - across).abs_diff(3) <= 1 && column.end - across >= 3;
-            for i in row.start..row.end {
-                let (to, from) = (&mut block[slots[i]], &local[i]);
+            let position = slots[first] == 0 && (row.end - first).abs_diff(3) <= 1 && row.end - first >= 3;
+            for j in column.start..column.end {
+                let (to, from) = (&mut block[slots[j]], &local[j]);
                 if position {
-                    for (to, from) in to[..3].iter_mut().zip(&from[across..across + 3]) {
-                        *to += from;
+                    for (to, from) in to[..3].iter_mut().zip(&from[first..first + 3]) {
+                        *to += T::from_f64(*from);
                     }
-                    if last == across + 3 {
-                        to[slots[last]] += from[last];
+                    if last == first + 3 {
+                        to[slots[last]] += T::from_f64(from[last]);
                     }
                 } else {
-                    for j in column.start..column.end {
-                        to[slots[j]] += from[j];
+                    for i in row.start..row.end {
+                        to[slots[i]] += T::from_f64(from[i]);
                     }
                 }
             }
@@ -365,7 +411,11 @@ mod tests {
             for (chunk, mut rows) in matrix.split_rows(chunks.bounds()).enumerate() {
                 let range = chunks.rows(chunk);
                 let (start, end) = (range.start * 5, range.end * 5);
-                let mut out = ChunkOutput { rows: range, gradient: &mut gradient[start..end], matrix: Some(&mut rows) };
+                let mut out = ChunkOutput {
+                    rows: range,
+                    gradient: &mut gradient[start..end],
+                    matrix: Some(MatrixRows::Double(&mut rows)),
+                };
                 energy += term.accumulate(chunk, &q, 1.0, &mut out);
             }
             let owned: f64 = (0..chunks.count()).map(|chunk| term.chunk_energy(chunk, &q)).sum();

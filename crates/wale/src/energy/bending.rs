@@ -47,75 +47,28 @@ impl Bending {
             2.0 - 2.0 * r * SMOOTHING * SMOOTHING / (smooth * smooth * smooth) + 6.0 * JAMMING * over,
         ]
     }
-}
 
-impl Bending {
-    /// Value, gradient and exact Hessian by way of `c = cos θ`, whose derivatives are rational.
-    fn curved(&self, q: &[f64; 12]) -> Local<12> {
-        let (energy, gradient) = self.gradient(q);
-        let mut local = Local { energy, gradient, hessian: [[0.0; 12]; 12] };
-        let (d1, d2) = (sub(point(q, 4), point(q, 0)), sub(point(q, 8), point(q, 4)));
-        let (l1, l2) = (dot(d1, d1).sqrt(), dot(d2, d2).sqrt());
-        let (t1, t2) = (scale(d1, 1.0 / l1), scale(d2, 1.0 / l2));
-        let (difference, sum) = (sub(t2, t1), add(t1, t2));
-        let theta = 2.0 * dot(difference, difference).sqrt().atan2(dot(sum, sum).sqrt());
-        let c = theta.cos();
-        let rest = q[11] - q[3];
+    /// `f′(θ)/θ`, finite at the straight yarn.
+    fn slope_by_angle(&self, theta: f64) -> f64 {
+        let smooth = (theta * theta + SMOOTHING * SMOOTHING).sqrt();
+        let over = theta - FRAC_PI_2;
+        let jamming = if over > 0.0 { 3.0 * JAMMING * over * over / theta } else { 0.0 };
+        2.0 - 2.0 * self.rest_angle / smooth + jamming
+    }
+
+    /// Value and gradient.
+    fn value(&self, angle: &Angle, rest: f64) -> (f64, [f64; 12]) {
         let k = self.stiffness / rest;
-        let [f, first, second] = self.profile(theta);
-        // F(c) = f(θ): F′ = −f′/sin θ, F″ = (f″ − f′ cot θ)/sin²θ, by their series at the straight yarn.
-        let (by_c, by_cc) = if theta < 1e-3 {
-            let smooth = (theta * theta + SMOOTHING * SMOOTHING).sqrt();
-            let g = 2.0 - 2.0 * self.rest_angle / smooth;
-            (-g * (1.0 + theta * theta / 6.0), 2.0 * self.rest_angle / (smooth * smooth * smooth) + g / 3.0)
-        } else {
-            let sine = theta.sin();
-            (-first / sine, (second - first * c / sine) / (sine * sine))
-        };
-        // Gradient of c by d₁ and d₂, and the three blocks of its Hessian.
-        let g1: [f64; 3] = std::array::from_fn(|i| (t2[i] - c * t1[i]) / l1);
-        let g2: [f64; 3] = std::array::from_fn(|i| (t1[i] - c * t2[i]) / l2);
-        let mut h = [[[0.0; 3]; 3]; 3];
-        for i in 0..3 {
-            for j in 0..3 {
-                let eye = f64::from(u8::from(i == j));
-                let own = |t: &[f64; 3], g: &[f64; 3], l: f64| {
-                    -(t[i] * g[j] + g[i] * t[j]) / l - c * (eye - t[i] * t[j]) / (l * l)
-                };
-                h[0][i][j] = k * (by_cc * g1[i] * g1[j] + by_c * own(&t1, &g1, l1));
-                h[1][i][j] = k * (by_cc * g2[i] * g2[j] + by_c * own(&t2, &g2, l2));
-                let mixed = (eye - t1[i] * t1[j] - t2[i] * t2[j] + c * t1[i] * t2[j]) / (l1 * l2);
-                h[2][i][j] = k * (by_cc * g1[i] * g2[j] + by_c * mixed);
+        let [f, first, _] = self.profile(angle.theta);
+        let mut gradient = [0.0; 12];
+        for (node, by_node) in angle.gradient.iter().enumerate() {
+            for i in 0..3 {
+                gradient[4 * node + i] = k * first * by_node[i];
             }
         }
-        // d₁ = x₁ − x₀ and d₂ = x₂ − x₁.
-        for i in 0..3 {
-            for j in 0..3 {
-                let (a, b, m, mt) = (h[0][i][j], h[1][i][j], h[2][i][j], h[2][j][i]);
-                local.hessian[i][j] = a;
-                local.hessian[i][4 + j] = m - a;
-                local.hessian[i][8 + j] = -m;
-                local.hessian[4 + i][j] = mt - a;
-                local.hessian[4 + i][4 + j] = a + b - m - mt;
-                local.hessian[4 + i][8 + j] = m - b;
-                local.hessian[8 + i][j] = -mt;
-                local.hessian[8 + i][4 + j] = mt - b;
-                local.hessian[8 + i][8 + j] = b;
-            }
-            let slope = k * by_c / rest;
-            for (x, g) in [(i, -g1[i]), (4 + i, g1[i] - g2[i]), (8 + i, g2[i])] {
-                local.hessian[x][3] = slope * g;
-                local.hessian[3][x] = slope * g;
-                local.hessian[x][11] = -slope * g;
-                local.hessian[11][x] = -slope * g;
-            }
-        }
-        let twice = 2.0 * k * f / (rest * rest);
-        local.hessian[3][3] = twice;
-        local.hessian[11][11] = twice;
-        local.hessian[3][11] = -twice;
-        local.hessian[11][3] = -twice;
-        local
+        gradient[3] = k * f / rest;
+        gradient[11] = -k * f / rest;
+        (k * f, gradient)
     }
 }
 
@@ -143,98 +96,86 @@ impl Element<12> for Bending {
 
     fn convex(&self, q: &[f64; 12]) -> Local<12> {
         let mut local = Local::zero();
-        let angle = Angle::new(q);
-        let rest = q[11] - q[3];
-        let k = self.stiffness / rest;
-        let [f, first, second] = self.profile(angle.theta);
-        local.energy = k * f;
-        let by_rest = -k * f / rest;
-        for i in 0..3 {
-            local.gradient[i] = k * first * angle.gradient[0][i];
-            local.gradient[4 + i] = k * first * angle.gradient[1][i];
-            local.gradient[8 + i] = k * first * angle.gradient[2][i];
-        }
-        local.gradient[3] = -by_rest;
-        local.gradient[11] = by_rest;
-
-        // In (θ, Δu) the energy is k f(θ)/Δu: clamp that 2×2 Hessian, whose θθ entry is positive near and past the
-        // rest angle.
-        let (a, b, c) = (k * second, -k * first / rest, 2.0 * k * f / (rest * rest));
-        let (a, b, c) = clamp2(a, b, c);
-        let mut g = [0.0; 12];
-        for (slots, by_node) in g.chunks_exact_mut(4).zip(&angle.gradient) {
-            slots[..3].copy_from_slice(by_node);
-        }
-        local.add_square(a, &g);
-        for i in 0..12 {
-            local.hessian[i][11] += b * g[i];
-            local.hessian[i][3] -= b * g[i];
-            local.hessian[11][i] += b * g[i];
-            local.hessian[3][i] -= b * g[i];
-        }
-        local.hessian[3][3] += c;
-        local.hessian[11][11] += c;
-        local.hessian[3][11] -= c;
-        local.hessian[11][3] -= c;
-
-        // What turns the bend out of its plane, or tilts a segment while it changes length, changes θ to second order
-        // with either sign; the size of that curvature steers well on both sides of the rest angle.
-        let size = k * first.abs();
-        let straight = if first >= 0.0 { angle.first_over_tangent(first) } else { -first / (0.5 * angle.theta).tan() };
-        let (opposite, together) = (0.5 * k * straight, 0.5 * size * (0.5 * angle.theta).tan());
-        for (factor, sign) in [(opposite, -1.0), (together, 1.0)] {
-            let (l1, l2) = (1.0 / angle.length[0], sign / angle.length[1]);
-            local.add_square(factor, &spread(angle.binormal, [-l1, l1 - l2, l2]));
-        }
-        for (segment, weights) in [(0, [-1.0, 1.0, 0.0]), (1, [0.0, -1.0, 1.0])] {
-            let l = angle.length[segment];
-            local.add_square(size / (l * l), &spread(angle.in_plane[segment], weights));
-        }
+        self.add_blended(q, 1.0, &mut local);
         local
     }
 
     fn add_blended(&self, q: &[f64; 12], convexity: f64, sum: &mut Local<12>) {
-        if convexity > 0.0 {
-            sum.add_scaled(convexity, &self.convex(q));
-        }
-        if convexity < 1.0 {
-            sum.add_scaled(1.0 - convexity, &self.curved(q));
-        }
-    }
-
-    fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
         let angle = Angle::new(q);
         let rest = q[11] - q[3];
         let k = self.stiffness / rest;
-        let [f, first, _] = self.profile(angle.theta);
-        let mut gradient = [0.0; 12];
-        for i in 0..3 {
-            gradient[i] = k * first * angle.gradient[0][i];
-            gradient[4 + i] = k * first * angle.gradient[1][i];
-            gradient[8 + i] = k * first * angle.gradient[2][i];
-        }
-        gradient[3] = k * f / rest;
-        gradient[11] = -k * f / rest;
-        (k * f, gradient)
-    }
-}
+        let [f, first, second] = self.profile(angle.theta);
+        sum.add_gradient(self.value(&angle, rest));
 
-/// One direction at all three nodes, with weights.
-fn spread(direction: [f64; 3], weights: [f64; 3]) -> [f64; 12] {
-    let mut g = [0.0; 12];
-    for i in 0..3 {
-        for node in 0..3 {
-            g[4 * node + i] = weights[node] * direction[i];
+        // In (θ, Δu) the energy is k f(θ)/Δu; the convex Hessian clamps its 2×2 Hessian.
+        let exact = [k * second, -k * first / rest, 2.0 * k * f / (rest * rest)];
+        let clamped = if convexity > 0.0 { clamp2(exact) } else { exact };
+        let [by_angle, mixed, by_rest] = std::array::from_fn(|i| exact[i] + convexity * (clamped[i] - exact[i]));
+        // What turns the bend out of its plane, both segments against each other or together, and what tilts a segment
+        // while it changes length, changes θ to second order with either sign; the convex Hessian takes the size.
+        let blend = |curvature: f64| curvature + convexity * (curvature.abs() - curvature);
+        let opposite = blend(0.5 * k * self.slope_by_angle(angle.theta) * angle.over_half_tangent());
+        let together = blend(-0.5 * k * first * angle.half_tangent);
+        let tilt = (1.0 - convexity) * k * first;
+        let in_plane = by_angle + convexity * k * first.abs();
+
+        let [l1, l2] = angle.length.map(|length| 1.0 / length);
+        let ([t1, t2], [m1, m2], b) = (angle.tangent, angle.in_plane, angle.binormal);
+        let hessian = &mut sum.hessian;
+        for i in 0..3 {
+            for j in 0..3 {
+                // By d₁ = x₁ − x₀ and d₂ = x₂ − x₁.
+                let across = b[i] * b[j];
+                let out = (opposite + together) * across;
+                let h11 = l1 * l1 * (in_plane * m1[i] * m1[j] + tilt * (t1[i] * m1[j] + m1[i] * t1[j]) + out);
+                let h22 = l2 * l2 * (in_plane * m2[i] * m2[j] - tilt * (t2[i] * m2[j] + m2[i] * t2[j]) + out);
+                let turn = (together - opposite) * across;
+                let h12 = l1 * l2 * (turn - by_angle * m1[i] * m2[j]);
+                let h21 = l1 * l2 * (turn - by_angle * m2[i] * m1[j]);
+                hessian[i][j] += h11;
+                hessian[i][4 + j] += h12 - h11;
+                hessian[i][8 + j] -= h12;
+                hessian[4 + i][j] += h21 - h11;
+                hessian[4 + i][4 + j] += h11 + h22 - h12 - h21;
+                hessian[4 + i][8 + j] += h12 - h22;
+                hessian[8 + i][j] -= h21;
+                hessian[8 + i][4 + j] += h21 - h22;
+                hessian[8 + i][8 + j] += h22;
+            }
         }
+        for (node, gradient) in angle.gradient.iter().enumerate() {
+            for i in 0..3 {
+                let h = mixed * gradient[i];
+                hessian[4 * node + i][3] -= h;
+                hessian[3][4 * node + i] -= h;
+                hessian[4 * node + i][11] += h;
+                hessian[11][4 * node + i] += h;
+            }
+        }
+        hessian[3][3] += by_rest;
+        hessian[11][11] += by_rest;
+        hessian[3][11] -= by_rest;
+        hessian[11][3] -= by_rest;
     }
-    g
+
+    fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
+        self.value(&Angle::new(q), q[11] - q[3])
+    }
 }
 
 /// The turning angle of two segments and what its derivatives are made of.
+///
+/// With `μ`, `τ` and `β` how far the end of a segment moves along its normal in the plane of the bend, along itself and
+/// out of the plane, in lengths of the segment, `θ` changes by
+/// `μ₂ − μ₁ + τ₁μ₁ − τ₂μ₂ + ¼ cot(θ/2) (β₁ − β₂)² − ¼ tan(θ/2) (β₁ + β₂)²` to second order.
 struct Angle {
     theta: f64,
+    /// `tan(θ/2)`.
+    half_tangent: f64,
     /// By `x₀`, `x₁`, `x₂`.
     gradient: [[f64; 3]; 3],
+    /// Unit vectors along the segments.
+    tangent: [[f64; 3]; 2],
     /// Unit vector normal to both segments (any, where they are parallel).
     binormal: [f64; 3],
     /// Unit vectors in the plane of the bend, normal to each segment.
@@ -247,45 +188,40 @@ impl Angle {
         let (d1, d2) = (sub(point(q, 4), point(q, 0)), sub(point(q, 8), point(q, 4)));
         let length = [dot(d1, d1).sqrt(), dot(d2, d2).sqrt()];
         let (t1, t2) = (scale(d1, 1.0 / length[0]), scale(d2, 1.0 / length[1]));
-        let difference = sub(t2, t1);
-        let s2 = dot(difference, difference);
-        let sum = add(t1, t2);
-        let theta = 2.0 * s2.sqrt().atan2(dot(sum, sum).sqrt());
+        let (difference, sum) = (sub(t2, t1), add(t1, t2));
+        let (opening, closing) = (dot(difference, difference).sqrt(), dot(sum, sum).sqrt());
         let normal = cross(t1, t2);
         let sine = dot(normal, normal).sqrt();
-        if sine < 1e-12 {
+        let binormal = if sine < 1e-12 {
             // Straight: θ has no direction, but every energy here is even in it, so no gradient is lost.
             let axis = if t1[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
             let b = cross(t1, axis);
-            let binormal = scale(b, 1.0 / dot(b, b).sqrt());
-            let m = cross(binormal, t1);
-            let gradient = Self::gradients(m, m, length);
-            return Self { theta, gradient, binormal, in_plane: [m, m], length };
-        }
-        let binormal = scale(normal, 1.0 / sine);
+            scale(b, 1.0 / dot(b, b).sqrt())
+        } else {
+            scale(normal, 1.0 / sine)
+        };
         // In-plane unit vectors: turning t₂ along m₂, or t₁ against m₁, increases θ.
         let (m1, m2) = (cross(binormal, t1), cross(binormal, t2));
-        Self { theta, gradient: Self::gradients(m1, m2, length), binormal, in_plane: [m1, m2], length }
-    }
-
-    fn gradients(m1: [f64; 3], m2: [f64; 3], length: [f64; 2]) -> [[f64; 3]; 3] {
         let (a, b) = (scale(m1, 1.0 / length[0]), scale(m2, 1.0 / length[1]));
-        [a, sub(scale(a, -1.0), b), b]
+        Self {
+            theta: 2.0 * opening.atan2(closing),
+            half_tangent: opening / closing,
+            gradient: [a, sub(scale(a, -1.0), b), b],
+            tangent: [t1, t2],
+            binormal,
+            in_plane: [m1, m2],
+            length,
+        }
     }
 
-    /// `f′ cot(θ/2)`, finite at the straight yarn because `f′` vanishes there too.
-    fn first_over_tangent(&self, first: f64) -> f64 {
-        if self.theta > 1e-6 {
-            first / (0.5 * self.theta).tan()
-        } else {
-            // f′ ≈ f″(0) θ, and the in-plane term already carries f″.
-            2.0 * if self.theta > 0.0 { first / self.theta } else { 2.0 }
-        }
+    /// `θ cot(θ/2)`, finite at the straight yarn.
+    fn over_half_tangent(&self) -> f64 {
+        if self.half_tangent > 1e-4 { self.theta / self.half_tangent } else { 2.0 - self.theta * self.theta / 6.0 }
     }
 }
 
 /// The positive semi-definite part of `[[a, b], [b, c]]`.
-fn clamp2(a: f64, b: f64, c: f64) -> (f64, f64, f64) {
+fn clamp2([a, b, c]: [f64; 3]) -> [f64; 3] {
     // Scale the variables first so that both diagonal entries weigh the same.
     let scale = if a > 0.0 && c > 0.0 { (a / c).sqrt() } else { 1.0 };
     let (b, c) = (b * scale, c * scale * scale);
@@ -293,14 +229,14 @@ fn clamp2(a: f64, b: f64, c: f64) -> (f64, f64, f64) {
     let half = (0.25 * (a - c) * (a - c) + b * b).sqrt();
     let (low, high) = (mean - half, mean + half);
     if low >= 0.0 {
-        return (a, b / scale, c / (scale * scale));
+        return [a, b / scale, c / (scale * scale)];
     }
     if high <= 0.0 || half == 0.0 {
-        return (0.0, 0.0, 0.0);
+        return [0.0; 3];
     }
     // Projector on the positive eigenvector: (A − low I)/(high − low), times high.
     let s = high / (high - low);
-    ((a - low) * s, b * s / scale, (c - low) * s / (scale * scale))
+    [(a - low) * s, b * s / scale, (c - low) * s / (scale * scale)]
 }
 
 #[cfg(test)]

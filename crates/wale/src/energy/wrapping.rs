@@ -1,6 +1,7 @@
 //! Wrapping of two yarns about a stitch contact.
 
 mod curvature;
+mod hinge;
 
 use std::f64::consts::PI;
 
@@ -8,7 +9,8 @@ use wale_numerics::check::Local;
 use wale_numerics::jet::Real;
 use wale_numerics::jet::vector3::{cross, dot, scale, sub};
 
-use self::curvature::{Curvature, add_angle_curvature, add_curvature_size, add_weight_curvature};
+use self::curvature::Curvature;
+use self::hinge::{Hinge, by_node};
 use super::element::{Element, point};
 
 /// Wrapping of two opposite yarn segments about a stitch contact.
@@ -60,43 +62,39 @@ impl Element<12> for Wrapping {
 
     fn add_blended(&self, q: &[f64; 12], convexity: f64, sum: &mut Local<12>) {
         let hinge = Hinge::new(q);
-        let (energy, gradient, weight) = self.value(&hinge);
-        sum.add_gradient((energy, gradient));
-        sum.add_square(self.stiffness * weight, &hinge.gradient);
-        let psi = self.sign * hinge.angle - self.rest_angle;
-        let deviation = psi - whole_turns(psi);
-        if convexity > 0.0 {
-            let curvature = Curvature::new(self.stiffness, deviation, hinge.sine_squares);
-            add_curvature_size(q, &curvature, convexity, sum);
-        }
-        if convexity < 1.0 {
-            let rest = 1.0 - convexity;
-            add_angle_curvature(q, rest * self.stiffness * weight * deviation * self.sign, &mut sum.hessian);
-            add_weight_curvature(q, &hinge, self.stiffness, deviation, self.sign, rest, sum);
-        }
+        sum.add_gradient(self.value(&hinge));
+        Curvature::new(&hinge, self.stiffness, self.deviation(hinge.angle), self.sign, convexity)
+            .add_to(&mut sum.hessian);
     }
 
     fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
-        let (energy, gradient, _) = self.value(&Hinge::new(q));
-        (energy, gradient)
+        self.value(&Hinge::new(q))
     }
 }
 
 impl Wrapping {
-    /// Energy, gradient and weight `ω_a ω_b`.
-    fn value(&self, hinge: &Hinge) -> (f64, [f64; 12], f64) {
-        let psi = self.sign * hinge.angle - self.rest_angle;
-        let deviation = psi - whole_turns(psi);
+    /// How far an angle is from rest, the shorter way round.
+    fn deviation(&self, angle: f64) -> f64 {
+        let psi = self.sign * angle - self.rest_angle;
+        psi - whole_turns(psi)
+    }
+
+    /// Energy and gradient.
+    fn value(&self, hinge: &Hinge) -> (f64, [f64; 12]) {
+        let deviation = self.deviation(hinge.angle);
         let [a, b] = hinge.sine_squares;
         let (wa, wb) = (a / (a + FADE), b / (b + FADE));
-        let weight = wa * wb;
         let half = 0.5 * self.stiffness * deviation * deviation;
         let (by_a, by_b) = (half * wb * FADE / ((a + FADE) * (a + FADE)), half * wa * FADE / ((b + FADE) * (b + FADE)));
-        let by_angle = self.stiffness * weight * deviation * self.sign;
-        let gradient = std::array::from_fn(|i| {
-            by_angle * hinge.gradient[i] + by_a * hinge.sine_gradient[0][i] + by_b * hinge.sine_gradient[1][i]
+        let by_angle = self.stiffness * wa * wb * deviation * self.sign;
+        let gradient = std::array::from_fn(|edge| {
+            std::array::from_fn(|i| {
+                by_angle * hinge.gradient[edge][i]
+                    + by_a * hinge.sine_gradient[0][edge][i]
+                    + by_b * hinge.sine_gradient[1][edge][i]
+            })
         });
-        (half * weight, gradient, weight)
+        (half * wa * wb, by_node(&gradient))
     }
 }
 
@@ -115,7 +113,7 @@ pub fn wrapping_angle<T: Real>(q: &[T; 12]) -> T {
 pub fn wrapping_gradient(q: &[f64; 12]) -> ([f64; 12], f64) {
     let hinge = Hinge::new(q);
     let [a, b] = hinge.sine_squares;
-    (hinge.gradient, (a / (a + FADE)) * (b / (b + FADE)))
+    (by_node(&hinge.gradient), (a / (a + FADE)) * (b / (b + FADE)))
 }
 
 fn sine_squares<T: Real>(q: &[T; 12]) -> [T; 2] {
@@ -126,61 +124,6 @@ fn sine_squares<T: Real>(q: &[T; 12]) -> [T; 2] {
         dot(v, v) / (dot(axis, axis) * dot(side, side))
     };
     [of(sub(x4, x0)), of(sub(x3, x1))]
-}
-
-/// The wrapping angle, its gradient [Cirio2017, Eq. 14], and the sines of both sides to the axis.
-struct Hinge {
-    angle: f64,
-    gradient: [f64; 12],
-    sine_squares: [f64; 2],
-    sine_gradient: [[f64; 12]; 2],
-}
-
-impl Hinge {
-    fn new(q: &[f64; 12]) -> Self {
-        let (x0, x1, x3, x4) = (point(q, 0), point(q, 3), point(q, 6), point(q, 9));
-        let axis = sub(x1, x0);
-        let axis_square = dot(axis, axis);
-        let e = scale(axis, 1.0 / axis_square.sqrt());
-        let va = cross(axis, sub(x4, x1));
-        let vb = cross(sub(x3, x1), axis);
-        let (a2, b2) = (dot(va, va), dot(vb, vb));
-        let angle = dot(e, cross(va, vb)).atan2(dot(va, vb));
-        // A segment along the axis has weight zero; any finite direction will do there.
-        let (na, nb) = (scale(va, 1.0 / a2.max(1e-60)), scale(vb, 1.0 / b2.max(1e-60)));
-        let (a0, a1, a4) = (dot(sub(x4, x1), e), dot(sub(x0, x4), e), dot(axis, e));
-        let (b0, b1, b3) = (dot(sub(x1, x3), e), dot(sub(x3, x0), e), -a4);
-        let mut gradient = [0.0; 12];
-        for k in 0..3 {
-            gradient[k] = b0 * nb[k] - a0 * na[k];
-            gradient[3 + k] = b1 * nb[k] - a1 * na[k];
-            gradient[6 + k] = b3 * nb[k];
-            gradient[9 + k] = -a4 * na[k];
-        }
-        // sin² = |v|²/(|axis|²|side|²), by side and by axis.
-        let (pa, pb) = (sub(x4, x0), sub(x3, x1));
-        let sine = |v: [f64; 3], v2: f64, side: [f64; 3]| {
-            let side_square = dot(side, side);
-            let s = v2 / (axis_square * side_square);
-            let factor = 2.0 / (axis_square * side_square);
-            // |side × axis|²: by side axis × (side × axis), by axis (side × axis) × side.
-            let by_side = sub(scale(cross(axis, v), factor), scale(side, 2.0 * s / side_square));
-            let by_axis = sub(scale(cross(v, side), factor), scale(axis, 2.0 * s / axis_square));
-            (s, by_side, by_axis)
-        };
-        let (sa, a_side, a_axis) = sine(scale(va, -1.0), a2, pa);
-        let (sb, b_side, b_axis) = sine(vb, b2, pb);
-        let mut sine_gradient = [[0.0; 12]; 2];
-        for k in 0..3 {
-            sine_gradient[0][k] = -a_axis[k] - a_side[k];
-            sine_gradient[0][3 + k] = a_axis[k];
-            sine_gradient[0][9 + k] = a_side[k];
-            sine_gradient[1][k] = -b_axis[k];
-            sine_gradient[1][3 + k] = b_axis[k] - b_side[k];
-            sine_gradient[1][6 + k] = b_side[k];
-        }
-        Self { angle, gradient, sine_squares: [sa, sb], sine_gradient }
-    }
 }
 
 #[cfg(test)]
@@ -217,9 +160,9 @@ mod tests {
         for _ in 0..20 {
             let q = random_contact(&mut random);
             let jet = wrapping_angle(&wale_numerics::jet::Jet::variables(&q));
-            let hinge = Hinge::new(&q);
+            let (gradient, _) = wrapping_gradient(&q);
             for i in 0..12 {
-                assert!((jet.gradient[i] - hinge.gradient[i]).abs() < 1e-11);
+                assert!((jet.gradient[i] - gradient[i]).abs() < 1e-11);
             }
         }
     }
