@@ -45,7 +45,12 @@ fn a_turning_fabric_keeps_turning() {
         scene.yarn.mass_damping = 0.0;
         let mut simulation = simulation(&scene);
         let network = simulation.network().clone();
+        // The layout first finds its own shape: snaps of whole loops in a step are another matter.
+        while simulation.state().time < 0.05 {
+            simulation.step().unwrap();
+        }
         let mut state = simulation.state().clone();
+        state.velocities.fill(0.0);
         for k in 0..network.node_count() {
             let x = DVec3::from_slice(&state.coordinates[BLOCK * k..]);
             let v = DVec3::new(0.0, 0.0, 20.0).cross(x);
@@ -53,7 +58,7 @@ fn a_turning_fabric_keeps_turning() {
         }
         assert!(simulation.restore(state));
         let before = spin(&simulation, &network);
-        while simulation.state().time < 0.08 {
+        while simulation.state().time < 0.05 + 0.08 {
             simulation.step().unwrap();
         }
         (before.0 / before.1, spin(&simulation, &network).0 / before.0)
@@ -63,7 +68,7 @@ fn a_turning_fabric_keeps_turning() {
         "of {before:.1} rad/s a quarter of a turn leaves {free:.3} undamped, {damped:.3} damped, in angular momentum"
     );
     assert!((before - 20.0).abs() < 1.0 && free > 0.85);
-    assert!((damped / free - 1.0).abs() < 0.03, "damping takes the spin away: {free} {damped}");
+    assert!((damped / free - 1.0).abs() < 0.01, "damping takes the spin away: {free} {damped}");
 }
 
 #[test]
@@ -72,8 +77,17 @@ fn a_free_fabric_falls_as_a_stone() {
         let mut scene =
             scene("pattern = \"stockinette\"\ncolumns = 6\nrows = 6\n[simulation]\nlargest_step = \"1 ms\"");
         scene.yarn.mass_damping = 0.0;
+        // The layout first finds its own shape.
+        scene.plan.simulation.gravity = DVec3::ZERO;
+        let mut settled = simulation(&scene);
+        while settled.state().time < 0.05 {
+            settled.step().unwrap();
+        }
+        let mut state = settled.state().clone();
+        state.velocities.fill(0.0);
         scene.plan.simulation.gravity = DVec3::new(0.0, 0.0, -gravity);
         let mut simulation = simulation(&scene);
+        assert!(simulation.restore(state));
         let nodes = simulation.network().node_count();
         let mass = |s: &Simulation, k: usize| s.system().yarn_at(NodeId::new(k));
         let total: f64 = (0..nodes).map(|k| mass(&simulation, k)).sum();
@@ -82,7 +96,7 @@ fn a_free_fabric_falls_as_a_stone() {
         let before = height(&simulation);
         let mut expected = 0.0;
         let mut speed = 0.0;
-        while simulation.state().time < 0.1 - 1e-9 {
+        while simulation.state().time < 0.05 + 0.1 - 1e-9 {
             let h = simulation.step().unwrap().step_size;
             speed += gravity * h;
             expected += speed * h;
@@ -91,7 +105,7 @@ fn a_free_fabric_falls_as_a_stone() {
     };
     let ((drift, _), (fallen, expected)) = (run(0.0), run(9.81));
     println!("without weight {:.3} mm; fallen {:.3} mm of {:.3} mm", 1e3 * drift, 1e3 * fallen, 1e3 * expected);
-    assert!(((fallen - drift) / expected - 1.0).abs() < 2e-3, "{fallen} {drift} {expected}");
+    assert!(((fallen - drift) / expected - 1.0).abs() < 5e-4, "{fallen} {drift} {expected}");
 }
 
 #[test]

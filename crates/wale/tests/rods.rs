@@ -1,75 +1,10 @@
 //! One yarn alone against what is known of rods and ropes: the whole chain of network, grips, steps and solver.
 
+mod rod;
+
 use glam::DVec3;
-use wale::model::{Drive, Grip, Motion, Network, NodeId, PassId, PassKind, SegmentKind, Selection};
-use wale::scene::Scene;
-use wale::simulation::Simulation;
-
-const BLOCK: usize = 5;
-/// Length of the rods \[m\].
-const LENGTH: f64 = 0.1;
-/// Their bending stiffness \[N·m²\].
-const EI: f64 = 1e-7;
-
-/// A straight yarn along x from the origin, one node at each end of `segments` segments.
-fn rod(segments: usize) -> Network {
-    let mut network = Network { yarn_start: vec![0], ..Network::default() };
-    let mut stacks = Vec::new();
-    for k in 0..=segments {
-        let x = LENGTH * k as f64 / segments as f64;
-        network.position.push(DVec3::X * x);
-        stacks.push(vec![PassId::new(k)]);
-        network.pass_node.push(NodeId::new(k));
-        network.pass_image.push([0, 0]);
-        network.pass_kind.push(PassKind::Edge);
-        network.pass_slides.push(false);
-        network.segment_kind.push(SegmentKind::Edge);
-        network.arc_length.push(x);
-        network.chart_place.push([k as f64, 0.0]);
-    }
-    network.yarn_start.push(u32::try_from(segments + 1).unwrap());
-    network.yarn_closure.push(None);
-    network.yarn_color.push([200, 180, 160]);
-    network.front = vec![DVec3::Z; segments + 1];
-    network.chart_size = [1, u32::try_from(segments).unwrap()];
-    network.set_stacks(&stacks);
-    network
-}
-
-/// A scene whose yarn is the rod, hardly extensible; `change` makes the plan.
-fn simulation(segments: usize, change: impl FnOnce(&mut Scene)) -> Simulation {
-    let text = "schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = 4\nrows = 4\n[simulation]\ngravity = 0\nself_contact = false\nnewton_tolerance = 1e-6\nnewton_iterations = 100";
-    let mut scene = Scene::from_text(text, "rod").unwrap();
-    scene.yarn.bending_stiffness = EI;
-    scene.yarn.stretch_stiffness = 1e7 * EI / (LENGTH * LENGTH);
-    scene.yarn.linear_density = 1e-3 * scene.fabric.path_ratio;
-    scene.yarn.mass_damping = 0.0;
-    scene.yarn.stiffness_damping = 0.0;
-    scene.plan.placement.center = DVec3::X * 0.5 * LENGTH;
-    change(&mut scene);
-    Simulation::new(rod(segments), &scene.yarn, &scene.fabric, scene.plan.clone())
-}
-
-fn grip(name: &str, from: f64, to: f64, drive: Drive) -> Grip {
-    let margin = DVec3::new(1e-6, 1.0, 1.0);
-    let nodes = Selection::Region { low: DVec3::X * from - margin, high: DVec3::X * to + margin };
-    Grip { name: name.to_owned(), nodes, axes: [true; 3], drive, from: 0.0, until: None }
-}
-
-fn still() -> Drive {
-    Drive::Follow(Motion::default())
-}
-
-fn place(simulation: &Simulation, node: usize) -> DVec3 {
-    DVec3::from_slice(&simulation.state().coordinates[BLOCK * node..])
-}
-
-/// Steps through heavily damped time until nothing moves.
-fn settle(simulation: &mut Simulation, time: f64) {
-    while simulation.state().time < time {
-        simulation.step().unwrap();
-    }
-}
+use rod::{BLOCK, EI, LENGTH, grip, place, settle, simulation, still};
+use wale::model::Drive;
 
 #[test]
 fn elastica() {
@@ -177,4 +112,113 @@ fn a_chain_hangs_and_swings_as_it_should() {
     let measured = std::f64::consts::PI / crossing.unwrap() / (9.81 / LENGTH).sqrt();
     println!("hanging chain: {measured:.5} of 1.20241");
     assert!((measured / 1.202_413 - 1.0).abs() < 0.01);
+}
+
+/// Orders of convergence between errors at 25, 50, 100 and 200 segments.
+fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect()
+}
+
+#[test]
+fn bends_of_a_circle_hold_the_moment_of_a_rod() {
+    // A rod laid into a closed circle with both ends clamped, disturbed, and left to settle: it is the circle that an end
+    // moment of 2πEI/L would roll it up to, and its clamps hold that moment.
+    let errors: Vec<f64> = [25, 50, 100, 200]
+        .into_iter()
+        .map(|segments| {
+            let step = LENGTH / segments as f64;
+            let radius = LENGTH / std::f64::consts::TAU;
+            let on_circle = |k: f64| {
+                let angle = std::f64::consts::TAU * (k - 0.5) / (segments as f64 - 1.0);
+                DVec3::new(angle.sin(), 0.0, 1.0 - angle.cos()) * radius
+            };
+            let mut network = rod::rod(segments);
+            for (k, x) in network.position.iter_mut().enumerate() {
+                *x = on_circle(k as f64);
+                // Bumps, away from the clamps.
+                if k > 1 && k + 2 < network.arc_length.len() {
+                    *x += DVec3::new(0.0, 0.0, 0.002 * (9.0 * k as f64 * step / LENGTH).sin());
+                }
+            }
+            let places = network.position.clone();
+            let mut simulation = rod::yarns(network, |scene| {
+                scene.yarn.mass_damping = 5.0;
+                scene.plan.simulation.largest_step = 0.05;
+                scene.plan.simulation.frame_rate = 1.0;
+                scene.plan.simulation.duration = 100.0;
+                let clamp = |name: &str, ends: [usize; 2]| {
+                    let mut clamp = grip(name, 0.0, 0.0, still());
+                    let (a, b) = (places[ends[0]], places[ends[1]]);
+                    let margin = DVec3::splat(1e-7);
+                    clamp.nodes = wale::model::Selection::Region { low: a.min(b) - margin, high: a.max(b) + margin };
+                    clamp
+                };
+                scene.plan.grips = vec![clamp("first", [0, 1]), clamp("last", [segments - 1, segments])];
+            });
+            settle(&mut simulation, 20.0);
+            // Bends hold k_b θ/Δu times two: the middle of the rod, far from the clamps.
+            let middle = segments / 2;
+            let (a, b) = (
+                place(&simulation, middle) - place(&simulation, middle - 1),
+                place(&simulation, middle + 1) - place(&simulation, middle),
+            );
+            let moment = EI * a.angle_between(b) / step;
+            let expected = std::f64::consts::TAU * EI / LENGTH;
+            let center = DVec3::Z * radius;
+            let round = (0..=segments)
+                .map(|k| (place(&simulation, k).distance(center) / radius - 1.0).abs())
+                .fold(0.0, f64::max);
+            println!("circle of {segments}: moment {:.5} of 1, out of round by {round:.1e} radii", moment / expected);
+            (moment / expected - 1.0).abs().max(round)
+        })
+        .collect();
+    println!("orders {:?}", orders(&errors));
+    assert!(errors[3] < 1e-2);
+}
+
+#[test]
+fn a_clamped_rod_swings_at_its_two_first_frequencies() {
+    for (beta, expected) in [(1.875_104_07_f64, 3.516_015), (4.694_091_13, 22.034_492)] {
+        let errors: Vec<f64> = [25, 50, 100, 200]
+            .into_iter()
+            .map(|segments| {
+                let step = LENGTH / segments as f64;
+                let free = LENGTH - 0.5 * step;
+                let unit = (EI / (rod::DENSITY * free.powi(4))).sqrt();
+                let mut simulation = simulation(segments, |scene| {
+                    scene.plan.simulation.largest_step = 5e-4 / expected;
+                    scene.plan.simulation.frame_rate = 1e-3;
+                    scene.plan.simulation.duration = 1e3;
+                    scene.plan.grips = vec![grip("clamp", 0.0, step, still())];
+                });
+                // The mode's shape, given as a velocity.
+                let share = (beta.cosh() + beta.cos()) / (beta.sinh() + beta.sin());
+                let mode = |x: f64| {
+                    let x = beta * x;
+                    x.cosh() - x.cos() - share * (x.sinh() - x.sin())
+                };
+                let mut state = simulation.state().clone();
+                for k in 2..=segments {
+                    let x = (k as f64 - 0.5) * step / free;
+                    state.velocities[BLOCK * k + 2] = 1e-3 * LENGTH * mode(x) * expected * unit;
+                }
+                assert!(simulation.restore(state));
+                let outwards = mode(1.0).signum();
+                let crossing = loop {
+                    let before = (simulation.state().time, outwards * place(&simulation, segments).z);
+                    simulation.step().unwrap();
+                    let after = (simulation.state().time, outwards * place(&simulation, segments).z);
+                    if before.1 > 0.0 && after.1 <= 0.0 {
+                        break before.0 + (after.0 - before.0) * before.1 / (before.1 - after.1);
+                    }
+                    assert!(after.0 < 10.0, "it does not swing");
+                };
+                let measured = std::f64::consts::PI / crossing / unit;
+                println!("clamped rod of {segments}: (βL)² {measured:.5} of {expected:.5}");
+                (measured / expected - 1.0).abs()
+            })
+            .collect();
+        println!("orders {:?}", orders(&errors));
+        assert!(errors[3] < 0.01, "{errors:?}");
+    }
 }

@@ -1,6 +1,7 @@
 //! How hard the two yarns of a contact node press on each other.
 
 use rayon::prelude::*;
+use wale_numerics::jet::vector3::{add, dot, scale, sub};
 
 use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
@@ -8,12 +9,12 @@ use crate::model::{Network, NodeId, PassId, SegmentKind};
 
 /// Compression of two-yarn contact nodes from the tension of their yarns.
 ///
-/// `λ = ½ |P₁F₁ − P₂F₂|`, `F_i` the net pull of yarn `i` on the node, `P_i` the projection across its direction there:
-/// what remains along it is friction's to balance.
+/// `λ = ½ |P (F₁ − F₂)|`, `F_i` the net pull of yarn `i` on the node, `P` the projection across the directions of both
+/// yarns there: what one pulls along itself, the other holds by friction.
 ///
 /// Differs from the paper: [Cirio2017, section 4.3] projects the forces on a fitted normal after offsetting the yarns
 /// by their radii. For two clasped yarns the resultant needs no normal, has no sign to choose, and gives the capstan
-/// law (test `capstan`).
+/// law (tests `capstan`, `a_belt_pulled_over_pegs_has_the_capstan_ratio`).
 #[derive(Clone, Debug, Default)]
 pub struct Compression {
     /// The two passes of each two-pass node.
@@ -82,16 +83,16 @@ impl Compression {
     pub fn evaluate(&self, q: &[f64], stiffness: [f64; 2], out: &mut Vec<f64>) {
         out.resize(self.contacts.len(), 0.0);
         out.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, [a, b])| {
-            let (fa, fb) = (a.pull(q, stiffness), b.pull(q, stiffness));
-            let square: f64 = (0..3).map(|k| (fa[k] - fb[k]) * (fa[k] - fb[k])).sum();
-            *lambda = 0.5 * square.sqrt();
+            let ((fa, ta), (fb, tb)) = (a.pull(q, stiffness), b.pull(q, stiffness));
+            let across = across_both(sub(fa, fb), ta, tb);
+            *lambda = 0.5 * dot(across, across).sqrt();
         });
     }
 }
 
 impl Neighbours {
-    /// Net pull of the yarn on the node across its direction there \[N\].
-    fn pull(&self, q: &[f64], stiffness: [f64; 2]) -> [f64; 3] {
+    /// Net pull of the yarn on the node \[N\], and its direction there: zero if it is folded back on itself.
+    fn pull(&self, q: &[f64], stiffness: [f64; 2]) -> ([f64; 3], [f64; 3]) {
         let mut force = [0.0; 3];
         let mut along = [0.0; 3];
         let here = self.block[1] as usize * BLOCK;
@@ -109,16 +110,22 @@ impl Neighbours {
                 }
             }
         }
-        // A yarn folded back on itself has no direction, and nothing to take out.
-        let square = along[0] * along[0] + along[1] * along[1] + along[2] * along[2];
-        if square > 1e-12 {
-            let share = (0..3).map(|k| along[k] * force[k]).sum::<f64>() / square;
-            for k in 0..3 {
-                force[k] -= share * along[k];
-            }
-        }
-        force
+        let square = dot(along, along);
+        (force, if square > 1e-12 { scale(along, 1.0 / square.sqrt()) } else { [0.0; 3] })
     }
+}
+
+/// Below this square of the sine between two directions they count as one.
+const PARALLEL: f64 = 1e-3;
+
+/// What of a force lies across two unit directions (or none, where one is zero).
+fn across_both(force: [f64; 3], a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    // Least squares of the force by both, held back a little so that nearly parallel ones do no harm.
+    let (aa, bb, ab) = (dot(a, a) + PARALLEL, dot(b, b) + PARALLEL, dot(a, b));
+    let (fa, fb) = (dot(force, a), dot(force, b));
+    let determinant = aa * bb - ab * ab;
+    let (x, y) = ((bb * fa - ab * fb) / determinant, (aa * fb - ab * fa) / determinant);
+    sub(force, add(scale(a, x), scale(b, y)))
 }
 
 #[cfg(test)]
@@ -140,7 +147,8 @@ mod tests {
         }
         let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13], chain: [false; 2] };
         // The other yarn pulls the node back with the opposite of the first one's resultant, as in equilibrium.
-        let f = yarn.pull(&q, [1.0; 2]);
+        let (force, along) = yarn.pull(&q, [1.0; 2]);
+        let f = across_both(force, along, [0.0; 3]);
         let mut out = Vec::new();
         let pull = (f[0] * f[0] + f[1] * f[1]).sqrt();
         // Two ends, the half of it each, out of the plane by a hair so that the holder has a direction.

@@ -182,7 +182,7 @@ impl Newton {
                 return Err(StepError::NotFinite);
             }
             let mut length = system.longest_step(q, &self.direction);
-            let whole = length == 1.0 && !solved.negative_curvature;
+            let mut whole = length == 1.0 && !solved.negative_curvature;
             let (mean, largest) = moves(&self.direction, node_count);
             self.try_length(q, length);
             renew(system, &self.trial);
@@ -212,6 +212,7 @@ impl Newton {
                     }
                 }
                 report.backtracks += shorter;
+                whole = false;
                 self.more_convex();
                 gradient_first = false;
                 new = self.look(system, linear, true);

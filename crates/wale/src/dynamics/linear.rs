@@ -4,7 +4,7 @@ use thiserror::Error;
 use wale_numerics::block_matrix::{BlockMatrix, PaddedBlock};
 use wale_numerics::coarse_space::CoarseSpace;
 use wale_numerics::conjugate_gradient::{
-    ConjugateGradient, ConjugateGradientEnd, ConjugateGradientSettings, LinearOperator, Single,
+    ConjugateGradient, ConjugateGradientEnd, ConjugateGradientReport, ConjugateGradientSettings, LinearOperator, Single,
 };
 use wale_numerics::incomplete_cholesky::{IncompleteCholesky, IncompleteCholeskySettings};
 use wale_numerics::preconditioner::{Additive, Preconditioner};
@@ -50,12 +50,12 @@ pub struct Coupling {
 }
 
 /// The matrix with the true stiffness of contacts.
-struct Coupled<'a> {
-    matrix: Single<'a>,
+struct Coupled<'a, M> {
+    matrix: M,
     couplings: &'a [Coupling],
 }
 
-impl LinearOperator for Coupled<'_> {
+impl<M: LinearOperator> LinearOperator for Coupled<'_, M> {
     fn dimension(&self) -> usize {
         self.matrix.dimension()
     }
@@ -98,6 +98,26 @@ const UPDATE: f64 = 0.2;
 /// Most iterations of conjugate gradients.
 const MOST_ITERATIONS: usize = 300;
 
+/// Residual to which contacts are put into a direct solve.
+const CONTACTS: f64 = 1e-3;
+
+fn reported(report: ConjugateGradientReport) -> Result<LinearReport, LinearError> {
+    let iterations = report.iterations;
+    let negative_curvature = match report.end {
+        ConjugateGradientEnd::Converged | ConjugateGradientEnd::IterationLimit => false,
+        ConjugateGradientEnd::NegativeCurvature if iterations > 1 => true,
+        ConjugateGradientEnd::NegativeCurvature | ConjugateGradientEnd::Breakdown => {
+            return Err(LinearError::NegativeCurvature);
+        }
+    };
+    Ok(LinearReport {
+        iterations,
+        negative_curvature,
+        approximate: report.initial_update,
+        last_update: report.last_update,
+    })
+}
+
 /// A symmetric positive definite block system and its solver.
 pub enum Linear {
     /// Sparse Cholesky factors with the symbolic part kept.
@@ -106,10 +126,27 @@ pub enum Linear {
     ConjugateGradient(Box<Iterative>),
 }
 
-/// Memory of the direct solver.
+/// Memory of the direct solver. Contacts are not in its factor: where there are some, conjugate gradients put them in,
+/// with the factor as preconditioner.
 pub struct Direct {
     matrix: BlockMatrix<f64>,
-    factor: SparseCholesky,
+    factor: Factor,
+    gradient: ConjugateGradient,
+    right_side: Vec<f64>,
+}
+
+/// A factor as a preconditioner.
+struct Factor {
+    cholesky: SparseCholesky,
+    solution: Vec<f64>,
+}
+
+impl Preconditioner for Factor {
+    fn add(&mut self, residual: &[f64], out: &mut [f64]) {
+        self.solution.copy_from_slice(residual);
+        self.cholesky.solve_in_place(&mut self.solution);
+        vector::add_scaled(out, 1.0, &self.solution);
+    }
 }
 
 /// Memory of the iterative solver. Its matrix has 32 bits: what is rounded off is far less than what conjugate gradients
@@ -137,8 +174,13 @@ impl Linear {
         };
         let pattern = system.pattern().clone();
         if direct {
-            let factor = SparseCholesky::new(pattern.clone(), free, BlockOrder::MinimumDegree)?;
-            return Ok(Self::Cholesky(Box::new(Direct { matrix: BlockMatrix::zeros(pattern), factor })));
+            let cholesky = SparseCholesky::new(pattern.clone(), free, BlockOrder::MinimumDegree)?;
+            return Ok(Self::Cholesky(Box::new(Direct {
+                matrix: BlockMatrix::zeros(pattern),
+                factor: Factor { cholesky, solution: vec![0.0; free.len()] },
+                gradient: ConjugateGradient::new(free.len()),
+                right_side: vec![0.0; free.len()],
+            })));
         }
         let prolongation = Prolongation::bilinear(system.chart_place(), COARSE_LOOPS);
         Ok(Self::ConjugateGradient(Box::new(Iterative {
@@ -201,7 +243,7 @@ impl Linear {
         match self {
             Self::Cholesky(direct) => {
                 direct.matrix.fix_slots(free, 1.0);
-                direct.factor.factor(&direct.matrix, 0.0)?;
+                direct.factor.cholesky.factor(&direct.matrix, 0.0)?;
             }
             Self::ConjugateGradient(iterative) => {
                 iterative.matrix.fix_slots(free, 1.0);
@@ -216,44 +258,41 @@ impl Linear {
     }
 
     /// Solves `A x = b` with the matrix that was factored last; `x` holds `b` on entry, zero in fixed slots. Contacts are
-    /// coupled by conjugate gradients, which stop where `x` settles within `close`; factors take the matrix as it is,
-    /// which bounds the contacts.
+    /// coupled by conjugate gradients, which stop where `x` settles within `close`.
     ///
     /// # Errors
     /// If the matrix is not positive definite or not finite.
     pub fn solve(&mut self, couplings: &[Coupling], x: &mut [f64], close: f64) -> Result<LinearReport, LinearError> {
         match self {
-            Self::Cholesky(direct) => {
-                direct.factor.solve_in_place(x);
+            Self::Cholesky(direct) if couplings.is_empty() => {
+                direct.factor.cholesky.solve_in_place(x);
                 Ok(LinearReport { approximate: vector::norm(x), ..LinearReport::default() })
+            }
+            Self::Cholesky(direct) => {
+                direct.right_side.copy_from_slice(x);
+                x.fill(0.0);
+                let settings = ConjugateGradientSettings {
+                    max_iterations: MOST_ITERATIONS,
+                    relative_tolerance: CONTACTS,
+                    absolute_update: close,
+                    ..ConjugateGradientSettings::default()
+                };
+                let matrix = Coupled { matrix: &direct.matrix, couplings };
+                reported(direct.gradient.solve(matrix, &mut direct.factor, &direct.right_side, x, None, &settings))
             }
             Self::ConjugateGradient(iterative) => {
                 iterative.right_side.copy_from_slice(x);
                 x.fill(0.0);
                 let settings = ConjugateGradientSettings { absolute_update: close, ..iterative.settings };
                 let matrix = Single { matrix: &iterative.matrix, rounded: &mut iterative.rounded };
-                let report = iterative.gradient.solve(
+                reported(iterative.gradient.solve(
                     Coupled { matrix, couplings },
                     &mut iterative.preconditioner,
                     &iterative.right_side,
                     x,
                     None,
                     &settings,
-                );
-                let iterations = report.iterations;
-                let negative_curvature = match report.end {
-                    ConjugateGradientEnd::Converged | ConjugateGradientEnd::IterationLimit => false,
-                    ConjugateGradientEnd::NegativeCurvature if iterations > 1 => true,
-                    ConjugateGradientEnd::NegativeCurvature | ConjugateGradientEnd::Breakdown => {
-                        return Err(LinearError::NegativeCurvature);
-                    }
-                };
-                Ok(LinearReport {
-                    iterations,
-                    negative_curvature,
-                    approximate: report.initial_update,
-                    last_update: report.last_update,
-                })
+                ))
             }
         }
     }
@@ -263,7 +302,7 @@ impl Linear {
         match self {
             Self::Cholesky(direct) => {
                 out.copy_from_slice(b);
-                direct.factor.solve_in_place(out);
+                direct.factor.cholesky.solve_in_place(out);
             }
             Self::ConjugateGradient(iterative) => iterative.preconditioner.apply(b, out),
         }

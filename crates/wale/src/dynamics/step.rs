@@ -145,7 +145,8 @@ impl System {
         let nodes = self.coordinates.node_count();
         let velocity = |node: usize| DVec3::from_slice(&state.velocities[BLOCK * node..]);
         let mean = (0..nodes).map(velocity).sum::<DVec3>() / nodes.max(1) as f64;
-        let squares = (0..nodes).into_par_iter().with_min_len(4096).map(|node| (velocity(node) - mean).length_squared());
+        let squares =
+            (0..nodes).into_par_iter().with_min_len(4096).map(|node| (velocity(node) - mean).length_squared());
         let fastest = squares.reduce(|| 0.0, f64::max).sqrt();
         // Two nodes close in by twice the fastest; a longer reach would find everything near everything.
         let reach = distance + (2.0 * h * fastest).clamp(0.5 * radius, distance);
