@@ -12,8 +12,12 @@ use crate::exit::{Code, Failure};
 
 /// Step that speeds are measured at \[s\].
 const STEP: f64 = 1e-3;
-/// Steps before the measurement: caches, factors, and edges that settle from the layout of the fabric's repeat.
-const WARM_UP: usize = 15;
+/// Longest step before the measurement \[s\].
+const WARM_UP_STEP: f64 = 2e-3;
+/// Simulated time before the measurement \[s\]: edges settle from the layout of the fabric's repeat, in free fall.
+const WARM_UP: f64 = 0.06;
+/// Height over the sphere \[m\]: it is met half way through the measurement.
+const HEIGHT: f64 = 0.036;
 
 /// What one swatch took.
 #[derive(Clone, Debug, Serialize)]
@@ -40,30 +44,35 @@ pub struct Measured {
     pub peak_memory_bytes: Option<u64>,
 }
 
-/// Runs a square garter swatch of about so many nodes for about `seconds` of wall time.
+/// Runs a square garter swatch of about so many nodes for so many steps, half of them before it meets the sphere.
 ///
 /// # Errors
 /// When a step fails.
-pub fn measure(nodes: u32, seconds: f64, solver: LinearSolver) -> Result<Measured, Failure> {
+pub fn measure(nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
     let mut scene = scene(nodes)?;
     scene.plan.simulation.linear_solver = solver;
-    scene.plan.simulation.largest_step = STEP;
+    scene.plan.simulation.largest_step = WARM_UP_STEP;
     let began = Instant::now();
     let mut simulation = simulation(&scene);
     let set_up_s = began.elapsed().as_secs_f64();
     let node_count = simulation.network().node_count();
-    for _ in 0..WARM_UP {
+    while simulation.state().time < WARM_UP {
         step(&mut simulation)?;
     }
-    let (mut steps, mut newton, mut linear) = (0, 0, 0);
+    scene.plan.simulation.largest_step = STEP;
+    simulation = going_on(&scene, simulation);
+    step(&mut simulation)?;
+    let (mut newton, mut linear) = (0, 0);
     let began = Instant::now();
-    while steps == 0 || began.elapsed().as_secs_f64() < seconds {
+    for _ in 0..steps {
         let report = step(&mut simulation)?;
-        steps += 1;
         newton += report.newton_iterations;
         linear += report.linear_iterations;
     }
     let step_s = began.elapsed().as_secs_f64() / steps as f64;
+    let product_bytes_per_s = product(&simulation);
+    scene.plan.simulation.largest_step = 5.0 * STEP;
+    scene.plan.simulation.frame_rate = 30.0;
     Ok(Measured {
         nodes: node_count,
         steps,
@@ -72,24 +81,34 @@ pub fn measure(nodes: u32, seconds: f64, solver: LinearSolver) -> Result<Measure
         node_steps_per_s: node_count as f64 / step_s,
         newton_iterations: newton as f64 / steps as f64,
         linear_iterations: linear as f64 / steps as f64,
-        frame_s: frame(&mut scene)?,
-        product_bytes_per_s: product(&simulation),
+        frame_s: frame(going_on(&scene, simulation))?,
+        product_bytes_per_s,
         peak_memory_bytes: peak_memory(),
     })
 }
 
-/// Wall time of the first frame at free steps.
-fn frame(scene: &mut Scene) -> Result<f64, Failure> {
-    scene.plan.simulation.largest_step = 5.0 * STEP;
-    scene.plan.simulation.frame_rate = 30.0;
-    let mut simulation = simulation(scene);
-    let began = Instant::now();
-    loop {
-        step(&mut simulation)?;
-        if simulation.frame_due().is_some() {
-            return Ok(began.elapsed().as_secs_f64());
+/// A simulation with another plan that goes on where one stands; never two at a time.
+fn going_on(scene: &Scene, before: Simulation) -> Simulation {
+    let state = before.state().clone();
+    drop(before);
+    let mut after = simulation(scene);
+    assert!(after.restore(state), "the same fabric has the same sizes");
+    after
+}
+
+/// Wall time of 1/30 s at free steps, from one frame to the next.
+fn frame(mut simulation: Simulation) -> Result<f64, Failure> {
+    let next = |simulation: &mut Simulation| -> Result<(), Failure> {
+        step(simulation)?;
+        while simulation.frame_due().is_none() {
+            step(simulation)?;
         }
-    }
+        Ok(())
+    };
+    next(&mut simulation)?;
+    let began = Instant::now();
+    next(&mut simulation)?;
+    Ok(began.elapsed().as_secs_f64())
 }
 
 /// The scene: as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
@@ -102,7 +121,7 @@ fn scene(nodes: u32) -> Result<Scene, Failure> {
          [simulation]\nduration = 100\nrelax_first = false\n\
          [[obstacle]]\nsphere = {{ center = [0, 0, 0], radius = {radius} }}\n",
         radius = 0.25 * width,
-        center = 0.25 * width + 4e-3,
+        center = 0.25 * width + HEIGHT,
     );
     Scene::from_text(&text, "bench").map_err(|error| Failure::new(Code::Bug, error))
 }
@@ -118,17 +137,20 @@ fn step(simulation: &mut Simulation) -> Result<wale::simulation::StepReport, Fai
 
 fn product(simulation: &Simulation) -> f64 {
     const REPEATS: usize = 5;
-    let matrix: BlockMatrix = BlockMatrix::zeros(simulation.system().pattern().clone());
+    let mut matrix: BlockMatrix<f32> = BlockMatrix::zeros(simulation.system().pattern().clone());
+    // Memory that was never written is not read from memory either.
+    matrix.values.fill(1.0);
     let x = vec![1.0; matrix.dimension()];
+    let mut rounded = vec![[0.0; 8]; matrix.rows()];
     let mut out = vec![0.0; matrix.dimension()];
-    let bytes = size_of_val(matrix.blocks())
+    let bytes = size_of_val(&matrix.values[..])
         + size_of_val(matrix.pattern().columns())
         + size_of_val(&x[..])
         + size_of_val(&out[..]);
     let mut best = f64::INFINITY;
     for repeat in 0..=REPEATS {
         let began = Instant::now();
-        matrix.multiply(std::hint::black_box(&x), &mut out);
+        matrix.multiply_rounded(std::hint::black_box(&x), &mut rounded, &mut out);
         std::hint::black_box(&mut out);
         if repeat > 0 {
             best = best.min(began.elapsed().as_secs_f64());

@@ -12,8 +12,10 @@ use crate::{machine, output, say};
 
 /// Sizes, as parts of the largest.
 const PARTS: [u32; 3] = [10, 3, 1];
-/// Wall time that a size is measured for \[s\].
-const SECONDS: f64 = 5.0;
+/// Steps that a swatch is measured for.
+const STEPS: usize = 60;
+/// Steps that a solver is measured for.
+const SOLVER_STEPS: usize = 20;
 
 /// Sizes around which conjugate gradients take over from factors \[nodes\].
 const SOLVER_NODES: [u32; 4] = [1000, 2000, 4000, 8000];
@@ -31,7 +33,7 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     let before = triad();
     let mut measured: Vec<Measured> = Vec::new();
     for part in PARTS {
-        measured.push(told(arguments, arguments.nodes / part, LinearSolver::Automatic)?);
+        measured.push(told(arguments, arguments.nodes / part, STEPS, LinearSolver::Automatic)?);
     }
     let bandwidth = before.max(triad());
     let exponent = exponent(&measured);
@@ -45,17 +47,18 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     }
     say!("memory triad on {threads} threads: {:.1} GB/s", 1e-9 * bandwidth)?;
     say!("garter swatch falling on a sphere, steps of 1 ms:")?;
-    say!("    nodes   node·steps/s   Newton   linear   frame of 1/30 s   product/triad   peak memory")?;
+    say!("    nodes   node·steps/s   Newton   linear   frame of 1/30 s   product/triad   peak memory   a node")?;
     for swatch in &measured {
         say!(
-            "{:>9} {:>14} {:>8.1} {:>8.1} {:>17} {:>13.0} % {:>13}",
+            "{:>9} {:>14} {:>8.1} {:>8.1} {:>17} {:>13.0} % {:>13} {:>8}",
             grouped(swatch.nodes as u64),
             grouped(swatch.node_steps_per_s as u64),
             swatch.newton_iterations,
             swatch.linear_iterations,
             span(swatch.frame_s),
             100.0 * swatch.product_bytes_per_s / bandwidth,
-            swatch.peak_memory_bytes.map_or_else(|| "?".to_owned(), bytes)
+            swatch.peak_memory_bytes.map_or_else(|| "?".to_owned(), bytes),
+            swatch.peak_memory_bytes.map_or_else(|| "?".to_owned(), |peak| bytes(peak / swatch.nodes as u64))
         )?;
     }
     say!("the cost of a step grows as n^{exponent:.2}")
@@ -64,8 +67,8 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     let mut measured = Vec::new();
     for nodes in SOLVER_NODES {
-        let direct = told(arguments, nodes, LinearSolver::Cholesky)?;
-        measured.push([direct, told(arguments, nodes, LinearSolver::ConjugateGradient)?]);
+        let direct = told(arguments, nodes, SOLVER_STEPS, LinearSolver::Cholesky)?;
+        measured.push([direct, told(arguments, nodes, SOLVER_STEPS, LinearSolver::ConjugateGradient)?]);
     }
     if arguments.json {
         let sizes: Vec<_> = measured.iter().map(|[a, b]| json!({"cholesky": a, "conjugate_gradient": b})).collect();
@@ -86,11 +89,11 @@ fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 /// Measures a size, and says so.
-fn told(arguments: &Bench, nodes: u32, solver: LinearSolver) -> Result<Measured, Failure> {
+fn told(arguments: &Bench, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
     if !arguments.manner.quiet {
         note(&format!("garter swatch of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
     }
-    measure(nodes, SECONDS, solver)
+    measure(nodes, steps, solver)
 }
 
 /// Slope of the logarithm of the cost over that of the size, from the smallest to the largest.

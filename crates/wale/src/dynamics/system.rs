@@ -65,6 +65,9 @@ struct ChunkWork {
     by_kind: Vec<(&'static str, f64)>,
 }
 
+/// Name and energy \[J\] of every kind, in the order of reports.
+pub type Energies = [(&'static str, f64); KINDS.len()];
+
 /// Kinds of energy, in the order of reports.
 const KINDS: [&str; 13] = [
     Stretch::NAME,
@@ -240,7 +243,7 @@ impl System {
     }
 
     /// Energy by kind \[J\], in a fixed order.
-    pub fn energies(&self, q: &[f64], work: &mut Workspace) -> Vec<(&'static str, f64)> {
+    pub fn energies(&self, q: &[f64], work: &mut Workspace) -> Energies {
         work.prepare(&self.chunks);
         work.chunks.par_iter_mut().for_each(|work| {
             work.by_kind.clear();
@@ -248,11 +251,10 @@ impl System {
                 term.chunk_parts(work.chunk, q, &mut |kind, energy| add_to_kind(&mut work.by_kind, kind, energy));
             }
         });
-        let mut sums: Vec<_> = KINDS.iter().map(|&kind| (kind, 0.0)).collect();
-        for work in &work.chunks {
-            work.by_kind.iter().for_each(|&(kind, energy)| add_to_kind(&mut sums, kind, energy));
-        }
-        sums
+        KINDS.map(|kind| {
+            let of_kind = work.chunks.iter().flat_map(|work| &work.by_kind).filter(|(name, _)| *name == kind);
+            (kind, of_kind.map(|(_, energy)| energy).sum())
+        })
     }
 
     /// Energy \[J\] and gradient.

@@ -13,7 +13,7 @@ use crate::dynamics::grips::{GripReport, Grips};
 use crate::dynamics::implicit_euler::{Newton, NewtonReport, NewtonSettings, StepError};
 use crate::dynamics::linear::LinearSettings;
 use crate::dynamics::step::Touch;
-use crate::dynamics::system::{System, Workspace};
+use crate::dynamics::system::{Energies, System, Workspace};
 use crate::dynamics::{State, terms};
 use crate::energy::Load;
 use crate::fabric::coordinates::{BLOCK, dof};
@@ -52,7 +52,7 @@ pub struct StepReport {
     /// Whether Newton's method reached its tolerance.
     pub converged: bool,
     /// Energies by kind \[J\].
-    pub energies: Vec<(&'static str, f64)>,
+    pub energies: Energies,
     /// Largest ratio of a yarn segment's length to its rest length \[–\].
     pub largest_stretch: f64,
     /// Smallest rest length of a segment \[m\].
@@ -75,8 +75,10 @@ pub struct SimulationError {
     pub cause: StepError,
 }
 
-/// Newton iterations, as a share of the most allowed, below which the next step is longer.
-const EASY: f64 = 0.34;
+/// Newton iterations up to which the next step is longer.
+const EASY: usize = 3;
+/// Newton iterations from which the next step is shorter: two steps of half the length then cost less than one.
+const HARD: usize = 8;
 /// A step whose last iteration still moved a node this far is taken again, shorter \[yarn radii\].
 const FAR_FROM_CONVERGED: f64 = 1.0;
 
@@ -192,8 +194,12 @@ impl Simulation {
             let end = if pieces > 1.0 { self.state.time + h } else { stop };
             match self.attempt(h, end) {
                 Ok(report) => {
-                    let easy = report.iterations as f64 <= EASY * f64::from(settings.newton_iterations);
-                    let next = if easy && rejected == 0 { wanted * 1.5 } else { wanted };
+                    let next = match report.iterations {
+                        0..=EASY if rejected == 0 => wanted * 1.5,
+                        HARD.. => wanted * 0.7,
+                        _ => wanted,
+                    };
+                    let next = next.max(settings.smallest_step);
                     self.accept(h, end, next.min(settings.largest_step));
                     return Ok(self.report(h, rejected, report));
                 }
