@@ -13,10 +13,10 @@ const NODES_A_LOOP: f64 = 4.0;
 const UNKNOWNS_A_NODE: f64 = 5.0;
 /// Bytes a node of yarns, stacks, contacts and the initial layout.
 const NETWORK_BYTES: f64 = 700.0;
-/// Bytes a node of all energies' elements and lists.
-const ENERGY_BYTES: f64 = 2600.0;
-/// Bytes a node of eleven blocks of five by five numbers.
-const MATRIX_BYTES: f64 = 11.0 * 25.0 * 8.0;
+/// Bytes a node of all energies' elements and lists, and of vectors; a run of 200,000 nodes peaks at 6.6 kB a node.
+const ENERGY_BYTES: f64 = 3300.0;
+/// Numbers of a node's eleven blocks of five by five; those of a factored matrix have 8 bytes, others 4.
+const MATRIX_NUMBERS: f64 = 11.0 * 25.0;
 /// Bytes of factor a node and doubling of the nodes.
 const FACTOR_BYTES: f64 = 120.0;
 /// Bytes a node of the incomplete factor and the coarse space.
@@ -57,7 +57,7 @@ impl Estimate {
         let memory = vec![
             ("yarns and nodes", linear(NETWORK_BYTES)),
             ("energies", linear(ENERGY_BYTES)),
-            ("matrix", linear(MATRIX_BYTES)),
+            ("matrix", linear(MATRIX_NUMBERS * if direct { 8.0 } else { 4.0 })),
             solver,
         ];
         Self { nodes: nodes as u64, memory }

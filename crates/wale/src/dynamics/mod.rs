@@ -4,6 +4,7 @@ pub mod grips;
 pub mod implicit_euler;
 pub mod linear;
 pub mod loop_shapes;
+mod scatter;
 pub mod state;
 pub mod step;
 pub mod system;
