@@ -36,7 +36,7 @@ impl Default for IncompleteCholeskySettings {
         Self {
             rows_per_domain: 2048,
             max_domains: 32,
-            shifts: vec![4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0],
+            shifts: vec![0.0, 1e-3, 4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0],
             smallest_pivot: 1e-6,
         }
     }

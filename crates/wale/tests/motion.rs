@@ -68,7 +68,7 @@ fn a_turning_fabric_keeps_turning() {
         "of {before:.1} rad/s a quarter of a turn leaves {free:.3} undamped, {damped:.3} damped, in angular momentum"
     );
     assert!((before - 20.0).abs() < 1.0 && free > 0.85);
-    assert!((damped / free - 1.0).abs() < 0.01, "damping takes the spin away: {free} {damped}");
+    assert!(damped > 0.99 * free, "damping takes the spin away: {free} {damped}");
 }
 
 #[test]
