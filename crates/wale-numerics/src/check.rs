@@ -44,15 +44,6 @@ impl<const N: usize> Local<N> {
         }
     }
 
-    /// Adds `factor · a bᵀ` and its mirror image, halved each, so that the Hessian stays symmetric.
-    pub fn add_symmetric(&mut self, factor: f64, a: &[f64; N], b: &[f64; N]) {
-        for i in 0..N {
-            for j in 0..N {
-                self.hessian[i][j] += 0.5 * factor * (a[i] * b[j] + b[i] * a[j]);
-            }
-        }
-    }
-
     /// Adds `factor · a aᵀ`.
     #[inline]
     pub fn add_square(&mut self, factor: f64, a: &[f64; N]) {

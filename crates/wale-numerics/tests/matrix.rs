@@ -20,6 +20,10 @@ fn product_equals_the_dense_one() {
 
         let mut narrow = BlockMatrix::<f32>::zeros(Arc::clone(matrix.pattern()));
         narrow.copy_from(&matrix);
+        let mut rounded = vec![[f32::NAN; 8]; rows];
+        let mut wide = vec![f64::NAN; x.len()];
+        narrow.multiply_rounded(&x, &mut rounded, &mut wide);
+        assert!(largest_difference(&wide, &expected) < 1e-5 * largest(&expected));
         let x: Vec<f32> = x.iter().map(|&v| v as f32).collect();
         let mut y = vec![f32::NAN; x.len()];
         narrow.multiply(&x, &mut y);

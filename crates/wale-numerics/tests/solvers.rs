@@ -92,6 +92,31 @@ fn conjugate_gradients_solve_a_random_matrix() {
 }
 
 #[test]
+fn conjugate_gradients_go_on_until_the_solution_settles() {
+    let Swatch { matrix, free, .. } = swatch(20, 20);
+    let b = right_hand_side(&free, 6);
+    let mut jacobi = BlockJacobi::new(matrix.rows());
+    jacobi.factor(&matrix);
+    let mut gradient = ConjugateGradient::new(b.len());
+    let mut solve = |goal: ConjugateGradientSettings| {
+        let mut x = vec![0.0; b.len()];
+        let report = gradient.solve(&matrix, &mut jacobi, &b, &mut x, None, &goal);
+        assert_eq!(report.end, ConjugateGradientEnd::Converged);
+        (report, wale_numerics::vector::norm(&x))
+    };
+    let (by_residual, _) = solve(settings(0.3));
+    let (settled, size) = solve(ConjugateGradientSettings { relative_update: 1e-3, ..settings(0.3) });
+    assert!(by_residual.last_update > 1e-3 * size, "the residual alone is deceived");
+    assert!(settled.last_update <= 1e-3 * size && settled.iterations > by_residual.iterations);
+    // Small updates end it before the residual does.
+    let small = 1e-2 * size;
+    let (exact, _) = solve(settings(1e-2));
+    let (early, _) = solve(ConjugateGradientSettings { absolute_update: small, ..settings(1e-2) });
+    assert!(early.last_update <= small && early.iterations < exact.iterations);
+    assert!(early.final_residual <= 3.0 * 1e-2 * early.initial_residual);
+}
+
+#[test]
 fn a_filter_does_what_taking_slots_out_does() {
     let matrix = random_matrix(150, 6, 15);
     let free: Vec<bool> = (0..matrix.dimension()).map(|s| s % 7 != 3).collect();

@@ -13,7 +13,7 @@ use crate::fabric::coordinates::BLOCK;
 pub struct NewtonSettings {
     /// Most iterations.
     pub max_iterations: usize,
-    /// Move of the nodes in the last iteration, root mean square \[m\]; no single node may move ten times as far.
+    /// How far the nodes may still have to go, root mean square \[m\], and a single one twenty times as far.
     pub tolerance: f64,
 }
 
@@ -28,7 +28,7 @@ pub struct NewtonReport {
     pub backtracks: usize,
     /// Largest move of a node in the last iteration \[m\].
     pub last_move: f64,
-    /// Whether the last iteration's moves are below the tolerance.
+    /// Whether what is left to go is below the tolerance.
     pub converged: bool,
 }
 
@@ -52,7 +52,7 @@ pub enum StepError {
     Linear(String),
 }
 
-/// How much further than the root mean square a single node may move in the last iteration.
+/// How much further than the root mean square a single node may still have to go.
 const SINGLE_NODE: f64 = 20.0;
 /// Convexity of a step's first matrix: a tenth of the convex one makes most of them positive definite.
 const FIRST_CONVEXITY: f64 = 0.1;
@@ -252,9 +252,7 @@ impl Newton {
     /// What is left to go after a whole move: what the preconditioner makes of the gradient there, a series that shrinks
     /// as it shrank from what it made of the gradient before, and what the linear solver did not wait for.
     fn left(&mut self, linear: &mut Linear, solved: &LinearReport, node_count: usize) -> Left {
-        for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
-            *d = if *free { -g } else { 0.0 };
-        }
+        self.face_downhill();
         linear.approximate(&self.direction, &mut self.estimate);
         let ratio = vector::norm(&self.estimate) / solved.approximate;
         if ratio.is_nan() || ratio >= 1.0 {
@@ -283,9 +281,7 @@ impl Newton {
         close: f64,
     ) -> Result<LinearReport, StepError> {
         loop {
-            for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
-                *d = if *free { -g } else { 0.0 };
-            }
+            self.face_downhill();
             let factored = if fresh { linear.factor(&self.free) } else { Ok(()) };
             match factored.and_then(|()| linear.solve(&self.couplings, &mut self.direction, close)) {
                 Ok(report) if report.negative_curvature => {
@@ -303,6 +299,13 @@ impl Newton {
                     fresh = true;
                 }
             }
+        }
+    }
+
+    /// Sets the direction to minus the gradient, zero in slots that are not free.
+    fn face_downhill(&mut self) {
+        for ((d, g), free) in self.direction.iter_mut().zip(&self.gradient).zip(&self.free) {
+            *d = if *free { -g } else { 0.0 };
         }
     }
 

@@ -82,11 +82,11 @@ impl Wrapping {
     /// Energy and gradient.
     fn value(&self, hinge: &Hinge) -> (f64, [f64; 12]) {
         let deviation = self.deviation(hinge.angle);
-        let [a, b] = hinge.sine_squares;
-        let (wa, wb) = (a / (a + FADE), b / (b + FADE));
+        let weights = hinge.weights();
+        let ([wa, wb], [slope_a, slope_b]) = (weights.value, weights.slope);
         let half = 0.5 * self.stiffness * deviation * deviation;
-        let (by_a, by_b) = (half * wb * FADE / ((a + FADE) * (a + FADE)), half * wa * FADE / ((b + FADE) * (b + FADE)));
-        let by_angle = self.stiffness * wa * wb * deviation * self.sign;
+        let (by_a, by_b) = (half * wb * slope_a, half * wa * slope_b);
+        let by_angle = self.stiffness * weights.product() * deviation * self.sign;
         let gradient = std::array::from_fn(|edge| {
             std::array::from_fn(|i| {
                 by_angle * hinge.gradient[edge][i]
@@ -94,7 +94,7 @@ impl Wrapping {
                     + by_b * hinge.sine_gradient[1][edge][i]
             })
         });
-        (half * wa * wb, by_node(&gradient))
+        (half * weights.product(), by_node(&gradient))
     }
 }
 
@@ -112,8 +112,7 @@ pub fn wrapping_angle<T: Real>(q: &[T; 12]) -> T {
 /// Gradient of the wrapping angle `ψ` by `x₀ x₁ x₃ x₄` \[1/m\] and the weight `ω_a ω_b` there.
 pub fn wrapping_gradient(q: &[f64; 12]) -> ([f64; 12], f64) {
     let hinge = Hinge::new(q);
-    let [a, b] = hinge.sine_squares;
-    (by_node(&hinge.gradient), (a / (a + FADE)) * (b / (b + FADE)))
+    (by_node(&hinge.gradient), hinge.weights().product())
 }
 
 fn sine_squares<T: Real>(q: &[T; 12]) -> [T; 2] {

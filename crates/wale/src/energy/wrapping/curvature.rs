@@ -3,7 +3,7 @@
 use wale_numerics::jet::vector3::{cross, dot, scale, sub};
 
 use super::FADE;
-use super::hinge::{ByEdge, Hinge};
+use super::hinge::{ByEdge, Hinge, Weights};
 
 /// Blocks of second derivatives by edges: axis–axis, axis–a, axis–b, a–a, a–b, b–b.
 #[derive(Default)]
@@ -13,29 +13,13 @@ pub(super) struct Curvature([[[f64; 3]; 3]; 6]);
 const WITH_AXIS: [usize; 2] = [1, 2];
 const WITH_ITSELF: [usize; 2] = [3, 5];
 
-/// What a wrap's weights and their slopes are, by the squares of the sines.
-struct Weights {
-    /// `ω_a`, `ω_b`.
-    value: [f64; 2],
-    slope: [f64; 2],
-    second: [f64; 2],
-}
-
-impl Weights {
-    fn new(sine_squares: [f64; 2]) -> Self {
-        let value = sine_squares.map(|s2| s2 / (s2 + FADE));
-        let slope = sine_squares.map(|s2| FADE / ((s2 + FADE) * (s2 + FADE)));
-        Self { value, slope, second: std::array::from_fn(|k| -2.0 * slope[k] / (sine_squares[k] + FADE)) }
-    }
-}
-
 impl Curvature {
     /// Second derivatives of `½ stiffness ω_a ω_b deviation²`, `deviation = sign ψ − rest` (but for whole turns), between
     /// the exact (`convexity = 0`) and the convex ones.
     pub fn new(hinge: &Hinge, stiffness: f64, deviation: f64, sign: f64, convexity: f64) -> Self {
         let mut sum = Self::default();
-        let weights = Weights::new(hinge.sine_squares);
-        let weight = weights.value[0] * weights.value[1];
+        let weights = hinge.weights();
+        let weight = weights.product();
         let exact = 1.0 - convexity;
         let slope = exact * stiffness * deviation * sign;
         let half = exact * 0.5 * stiffness * deviation * deviation;
@@ -136,7 +120,7 @@ impl Curvature {
     /// axis its weight falls within a tenth of the side's length, which is the sharpest of all that bends here.
     fn add_size(&mut self, hinge: &Hinge, weights: &Weights, stiffness: f64, deviation: f64, factor: f64) {
         let e = hinge.along;
-        let slope = stiffness * weights.value[0] * weights.value[1] * deviation;
+        let slope = stiffness * weights.product() * deviation;
         for side in 0..2 {
             let edge = hinge.edges[1 + side];
             let along = dot(edge, e);

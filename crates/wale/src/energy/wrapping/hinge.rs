@@ -2,6 +2,7 @@
 
 use wale_numerics::jet::vector3::{cross, dot, scale, sub};
 
+use super::FADE;
 use crate::energy::element::point;
 
 /// By the axis `A = x₁ − x₀` and the sides `a = x₄ − x₀` and `b = x₃ − x₁`, in this order: everything here depends on
@@ -66,6 +67,28 @@ impl Hinge {
             sine_squares: [sa, sb],
             sine_gradient: [[a_axis, a_side, [0.0; 3]], [b_axis, [0.0; 3], b_side]],
         }
+    }
+}
+
+/// The weights `ω = sin²/(sin² + 0.1²)` of both sides, and their derivatives by `sin²`.
+pub(super) struct Weights {
+    pub value: [f64; 2],
+    pub slope: [f64; 2],
+    pub second: [f64; 2],
+}
+
+impl Weights {
+    /// `ω_a ω_b`.
+    pub fn product(&self) -> f64 {
+        self.value[0] * self.value[1]
+    }
+}
+
+impl Hinge {
+    pub fn weights(&self) -> Weights {
+        let value = self.sine_squares.map(|s2| s2 / (s2 + FADE));
+        let slope = self.sine_squares.map(|s2| FADE / ((s2 + FADE) * (s2 + FADE)));
+        Weights { value, slope, second: std::array::from_fn(|k| -2.0 * slope[k] / (self.sine_squares[k] + FADE)) }
     }
 }
 
