@@ -20,7 +20,7 @@ const MATRIX_NUMBERS: f64 = 11.0 * 25.0;
 /// Bytes of factor a node and doubling of the nodes.
 const FACTOR_BYTES: f64 = 120.0;
 /// Bytes a node of the incomplete factor and the coarse space.
-const PRECONDITIONER_BYTES: f64 = 1500.0;
+const PRECONDITIONER_BYTES: f64 = 1000.0;
 /// Nodes of a loop at an edge besides those: cast-on, bind-off and turns.
 const NODES_AN_EDGE_LOOP: f64 = 2.0;
 

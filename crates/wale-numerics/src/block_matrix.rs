@@ -4,7 +4,7 @@
 //! fixed. Both halves are stored, so that every row can be assembled and multiplied by itself.
 
 use crate::block_pattern::BlockPattern;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, Stored};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -246,7 +246,11 @@ impl BlockMatrix<f32> {
 /// One block row times a vector of blocks, each of which may be padded to `N` numbers. `entries` begin with the row's
 /// first block and go on for at least [`PADDING`] after its last; the sums after the first five mean nothing.
 #[inline(always)]
-pub(crate) fn row_times_vector<T: Scalar, const N: usize>(entries: &[T], columns: &[u32], x: &[[T; N]]) -> [T; LANES] {
+pub(crate) fn row_times_vector<T: Scalar, S: Stored<T>, const N: usize>(
+    entries: &[S],
+    columns: &[u32],
+    x: &[[T; N]],
+) -> [T; LANES] {
     // Two sums, so that one need not wait for the other.
     let mut sums = [[T::ZERO; LANES]; 2];
     for (k, &column) in columns.iter().enumerate() {
@@ -254,7 +258,7 @@ pub(crate) fn row_times_vector<T: Scalar, const N: usize>(entries: &[T], columns
         let v = &x[column as usize];
         for c in 0..SLOTS {
             for lane in 0..LANES {
-                sums[c % 2][lane] = block[c * SLOTS + lane].fused(v[c], sums[c % 2][lane]);
+                sums[c % 2][lane] = block[c * SLOTS + lane].load().fused(v[c], sums[c % 2][lane]);
             }
         }
     }

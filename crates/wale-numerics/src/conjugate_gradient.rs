@@ -127,6 +127,11 @@ impl ConjugateGradient {
         &self.direction
     }
 
+    /// The matrix times the last search direction.
+    pub fn product(&self) -> &[f64] {
+        &self.product
+    }
+
     /// `√(rᵀM⁻¹r)` before each iteration of the last solve, and at its end.
     pub fn history(&self) -> &[f64] {
         &self.history

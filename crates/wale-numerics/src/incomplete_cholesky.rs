@@ -3,7 +3,8 @@
 //! The matrix is approximated by `(I + M) D (I + M)ᵀ`, `M` with the pattern of the strictly lower
 //! blocks and `D` block diagonal; on a pattern without fill this is exact. It is computed in 64
 //! bits, because stiff and soft directions differ by more than 32 bits can tell apart after
-//! elimination, and kept in 32, because the sweeps are bound by memory. Rows keep their natural
+//! elimination; `M` is kept in 16, the same on both sides of the diagonal, because the sweeps are
+//! bound by memory, `D⁻¹` in 32. Rows keep their natural
 //! order, which follows the yarn along the courses. Couplings between domains are dropped in the
 //! factor: nearly free for the loose solves inside Newton. The number of domains follows from the
 //! size of the matrix alone, so results are the same on any thread count.
@@ -11,7 +12,7 @@
 use crate::block_matrix::{BLOCK, BlockMatrix, LANES, PADDING, PaddedBlock, SLOTS, row_times_vector};
 use crate::block_pattern::BlockPattern;
 use crate::preconditioner::Preconditioner;
-use crate::scalar::Scalar;
+use crate::scalar::{Coarse, Scalar};
 use crate::small_block::{inverse_of_positive, product, subtract_product, transposed};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -99,7 +100,7 @@ struct Half {
     row_start: Vec<u32>,
     column: Vec<u32>,
     /// Column-major blocks, and [`PADDING`].
-    entries: Vec<f32>,
+    entries: Vec<Coarse>,
 }
 
 /// The rows in 64 bits that later ones may still need, in two rings.
@@ -203,9 +204,9 @@ impl Half {
     }
 }
 
-fn write_block(entries: &mut [f32], place: usize, block: &[f64; BLOCK]) {
+fn write_block<S>(entries: &mut [S], place: usize, block: &[f64; BLOCK], store: impl Fn(f32) -> S) {
     for (to, from) in entries[place * BLOCK..][..BLOCK].iter_mut().zip(block) {
-        *to = *from as f32;
+        *to = store(*from as f32);
     }
 }
 
@@ -260,7 +261,7 @@ impl Domain {
         };
         let mirror = lower.column.iter().map(mirror_of).collect();
         for half in [&mut lower, &mut upper] {
-            half.entries = vec![0.0; half.column.len() * BLOCK + PADDING];
+            half.entries = vec![Coarse::default(); half.column.len() * BLOCK + PADDING];
         }
         let longest = (0..rows).map(|row| lower.row(row).len()).max();
         Self {
@@ -310,7 +311,7 @@ impl Domain {
             let inverse = if kept { inverse_of_positive(remains, smallest_pivot) } else { None };
             let inverse = inverse.ok_or(global)?;
             self.recent.diagonal[row & self.recent.diagonal_mask] = inverse;
-            write_block(&mut self.inverse_diagonal, row, &inverse);
+            write_block(&mut self.inverse_diagonal, row, &inverse, |x| x);
         }
         Ok(())
     }
@@ -330,8 +331,8 @@ impl Domain {
             let image = transposed(remains);
             self.recent.upper[mirror & mask] = image;
             // Column by column the mirror image is the factor row by row.
-            write_block(&mut self.lower.entries, range.start + k, &transposed(&factor));
-            write_block(&mut self.upper.entries, mirror, &factor);
+            write_block(&mut self.lower.entries, range.start + k, &transposed(&factor), Coarse::nearest);
+            write_block(&mut self.upper.entries, mirror, &factor, Coarse::nearest);
             // The columns after this one that the row above has too; last of all the mirror
             // image itself, which meets the diagonal.
             let later = &columns[k + 1..];

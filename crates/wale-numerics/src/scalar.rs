@@ -68,3 +68,36 @@ macro_rules! scalar {
 
 scalar!(f32);
 scalar!(f64);
+
+/// A number as it is kept in memory.
+pub trait Stored<T>: Copy {
+    /// The number.
+    fn load(self) -> T;
+}
+
+impl<T: Scalar> Stored<T> for T {
+    #[inline(always)]
+    fn load(self) -> T {
+        self
+    }
+}
+
+/// The upper half of a number of 32 bits: eight bits of precision.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Coarse(u16);
+
+impl Coarse {
+    /// The nearest one, even if two are as near.
+    #[inline(always)]
+    pub fn nearest(value: f32) -> Self {
+        let bits = value.to_bits();
+        Self((bits.wrapping_add(0x7fff + (bits >> 16 & 1)) >> 16) as u16)
+    }
+}
+
+impl Stored<f32> for Coarse {
+    #[inline(always)]
+    fn load(self) -> f32 {
+        f32::from_bits(u32::from(self.0) << 16)
+    }
+}

@@ -1,12 +1,12 @@
 //! One implicit Euler step: the minimum of inertia, energies, friction and damping.
 
-use glam::DVec3;
 use thiserror::Error;
 use wale_numerics::vector;
 
+use super::few::FewNodes;
 use super::linear::{Coupling, Linear, LinearError, LinearReport, LinearSettings};
+use super::remaining::{Left, MOST_FAR, far_nodes, moves};
 use super::system::{System, Workspace};
-use crate::fabric::coordinates::BLOCK;
 
 /// How a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,22 +64,16 @@ const KEEP_MATRIX: f64 = 0.1;
 const CLOSE: f64 = 0.1;
 /// Updates as large as the last that conjugate gradients would still have made, about.
 const UNSETTLED: f64 = 5.0;
+/// Most times that a matrix is made convex where it is not.
+const MOST_STIFFENED: usize = 4;
+/// Parts of the tolerance that a node has left to go where it is solved for itself.
+const HOT: f64 = 5.0;
+/// Times that far nodes are solved for themselves after a move.
+const MOST_MENDS: usize = 3;
+/// Times the mean move that a node moves where it may be to blame for a step that does not lower the energy.
+const FAR_MOVE: f64 = 8.0;
 /// Most halvings of a step that does not lower the energy.
 const MOST_HALVINGS: usize = 30;
-
-/// What is left to go after a move.
-#[derive(Clone, Copy)]
-struct Left {
-    /// As a part of the move.
-    ratio: f64,
-    /// Moves of the nodes, root mean square and largest \[m\].
-    mean: f64,
-    largest: f64,
-}
-
-impl Left {
-    const ALL: Self = Self { ratio: 1.0, mean: f64::INFINITY, largest: f64::INFINITY };
-}
 
 /// Memory that Newton's method keeps between steps.
 pub struct Newton {
@@ -93,8 +87,11 @@ pub struct Newton {
     /// Taken when a step first needs it, and anew when other slots are free.
     linear: Option<Linear>,
     linear_settings: LinearSettings,
-    /// Convexity of the next matrix.
+    /// Convexity of the matrix, or of the next.
     convexity: f64,
+    few: FewNodes,
+    /// Blocks that have negative curvature, or that are solved for themselves.
+    blocks: Vec<u32>,
     /// Scratch of sums.
     pub work: Workspace,
 }
@@ -114,6 +111,8 @@ impl Newton {
             linear: None,
             linear_settings,
             convexity: FIRST_CONVEXITY,
+            few: FewNodes::new(system.coordinates.block_count()),
+            blocks: Vec::with_capacity(system.coordinates.block_count().min(MOST_FAR)),
             work: Workspace::default(),
         }
     }
@@ -192,6 +191,13 @@ impl Newton {
             let noise = 1e-13 * energy.abs() + 1e-30;
             let low = |energy_there: f64, length: f64| energy_there <= energy + 1e-4 * length * slope + noise;
             let mut left = Left::ALL;
+            if whole
+                && !new.as_ref().is_ok_and(|&new| low(new, length))
+                && far_nodes(&self.direction, node_count, FAR_MOVE * mean, &mut self.blocks)
+                && self.mend(system, settings.tolerance)
+            {
+                new = self.look(system, linear, !gradient_first);
+            }
             if new.as_ref().is_ok_and(|&new| low(new, length)) {
                 if whole {
                     left = self.left(linear, &solved, node_count);
@@ -218,10 +224,21 @@ impl Newton {
                 new = self.look(system, linear, true);
             }
             energy = new?;
-            q.copy_from_slice(&self.trial);
             report.last_move = length * largest;
             let within =
                 |mean: f64, largest: f64| mean <= settings.tolerance && largest <= SINGLE_NODE * settings.tolerance;
+            // A few loops that snap over are not worth another iteration of all.
+            let mut mends = if whole && gradient_first && left.ratio < 1.0 { MOST_MENDS } else { 0 };
+            while mends > 0 && !within(left.mean.min(mean), left.largest.min(largest)) {
+                let far = far_nodes(&self.estimate, node_count, HOT * settings.tolerance, &mut self.blocks);
+                if !far || !self.mend(system, settings.tolerance) {
+                    break;
+                }
+                energy = self.look(system, linear, false)?;
+                left = self.left(linear, &solved, node_count);
+                mends -= 1;
+            }
+            q.copy_from_slice(&self.trial);
             if whole && within(left.mean.min(mean), left.largest.min(largest)) {
                 report.converged = true;
                 break;
@@ -234,6 +251,11 @@ impl Newton {
             gradient_first = stands;
         }
         Ok(report)
+    }
+
+    /// Solves `self.blocks` for themselves at the trial; returns whether they moved.
+    fn mend(&mut self, system: &System, tolerance: f64) -> bool {
+        self.few.minimise(system, &self.free, &mut self.trial, &self.blocks, tolerance)
     }
 
     /// Energy and gradient at the trial, and the matrix if wanted.
@@ -280,23 +302,33 @@ impl Newton {
         mut fresh: bool,
         close: f64,
     ) -> Result<LinearReport, StepError> {
+        let mut stiffened = 0;
         loop {
             self.face_downhill();
-            let factored = if fresh { linear.factor(&self.free) } else { Ok(()) };
-            match factored.and_then(|()| linear.solve(&self.couplings, &mut self.direction, close)) {
-                Ok(report) if report.negative_curvature => {
-                    self.more_convex();
-                    return Ok(report);
-                }
-                Ok(report) => {
+            let factored = if fresh && stiffened == 0 { linear.factor(&self.free) } else { Ok(()) };
+            let solved = factored.and_then(|()| linear.solve(&self.couplings, &mut self.direction, close));
+            match solved {
+                Ok(report) if !report.negative_curvature => {
                     self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
                     return Ok(report);
                 }
-                Err(error) if self.convexity >= 1.0 => return Err(failed(error)),
-                Err(_) => {
+                Ok(_) if fresh && stiffened < MOST_STIFFENED && self.convexity < 1.0 => {
+                    linear.yielding(&mut self.blocks);
+                    let selected = self.few.touching(system, &self.blocks);
+                    linear.stiffen(system, selected, q, self.convexity, &self.free);
+                    stiffened += 1;
+                }
+                Ok(report) if report.iterations > 1 => {
+                    self.more_convex();
+                    return Ok(report);
+                }
+                solved if self.convexity >= 1.0 => {
+                    return Err(failed(solved.err().unwrap_or(LinearError::NegativeCurvature)));
+                }
+                _ => {
                     self.more_convex();
                     self.linearise(system, linear, q)?;
-                    fresh = true;
+                    (fresh, stiffened) = (true, 0);
                 }
             }
         }
@@ -335,15 +367,4 @@ impl Newton {
 
 fn failed(error: LinearError) -> StepError {
     StepError::Linear(error.to_string())
-}
-
-/// Moves of the nodes in a global vector: root mean square and largest \[m\].
-fn moves(direction: &[f64], node_count: usize) -> (f64, f64) {
-    let (mut sum, mut largest) = (0.0, 0.0f64);
-    for d in direction[..BLOCK * node_count].as_chunks::<BLOCK>().0 {
-        let square = DVec3::from_slice(d).length_squared();
-        sum += square;
-        largest = largest.max(square);
-    }
-    ((sum / node_count.max(1) as f64).sqrt(), largest.sqrt())
 }

@@ -12,7 +12,9 @@ use wale_numerics::prolongation::Prolongation;
 use wale_numerics::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 use wale_numerics::vector;
 
+use super::selected::Selected;
 use super::system::{System, Workspace};
+use crate::fabric::coordinates::BLOCK;
 use crate::model::LinearSolver;
 
 /// What a linear solve took.
@@ -20,7 +22,8 @@ use crate::model::LinearSolver;
 pub struct LinearReport {
     /// Iterations of conjugate gradients; zero for a direct solve.
     pub iterations: usize,
-    /// Whether they met a direction of negative curvature and stopped there: what they found goes downhill still.
+    /// Whether they met a direction of negative curvature and stopped there: what they found in more than one iteration
+    /// goes downhill still.
     pub negative_curvature: bool,
     /// Norm of what [`Linear::approximate`] makes of the right side.
     pub approximate: f64,
@@ -98,6 +101,9 @@ const UPDATE: f64 = 0.2;
 /// Most iterations of conjugate gradients.
 const MOST_ITERATIONS: usize = 300;
 
+/// Part of all negative curvature that makes a node one of those that have it.
+const YIELDING: f64 = 0.01;
+
 /// Residual to which contacts are put into a direct solve.
 const CONTACTS: f64 = 1e-3;
 
@@ -105,10 +111,8 @@ fn reported(report: ConjugateGradientReport) -> Result<LinearReport, LinearError
     let iterations = report.iterations;
     let negative_curvature = match report.end {
         ConjugateGradientEnd::Converged | ConjugateGradientEnd::IterationLimit => false,
-        ConjugateGradientEnd::NegativeCurvature if iterations > 1 => true,
-        ConjugateGradientEnd::NegativeCurvature | ConjugateGradientEnd::Breakdown => {
-            return Err(LinearError::NegativeCurvature);
-        }
+        ConjugateGradientEnd::NegativeCurvature => true,
+        ConjugateGradientEnd::Breakdown => return Err(LinearError::NegativeCurvature),
     };
     Ok(LinearReport {
         iterations,
@@ -298,6 +302,31 @@ impl Linear {
                     None,
                     &settings,
                 ))
+            }
+        }
+    }
+
+    /// Blocks that have the negative curvature which conjugate gradients met last: those that yield to the direction.
+    pub fn yielding(&self, blocks: &mut Vec<u32>) {
+        blocks.clear();
+        let Self::ConjugateGradient(iterative) = self else { return };
+        let [along, product] = [iterative.gradient.direction(), iterative.gradient.product()];
+        let products = along.as_chunks::<BLOCK>().0.iter().zip(product.as_chunks::<BLOCK>().0);
+        let curvature = products.map(|(d, p)| d.iter().zip(p).map(|(d, p)| d * p).sum::<f64>());
+        let negative: f64 = curvature.clone().filter(|&c| c < 0.0).sum();
+        blocks.extend((0..).zip(curvature).filter(|(_, c)| *c < YIELDING * negative).map(|(block, _)| block));
+    }
+
+    /// Makes the matrix that was taken at `q` with a convexity the convex one in some elements; the preconditioner stays.
+    pub fn stiffen(&mut self, system: &System, selected: &Selected, q: &[f64], convexity: f64, free: &[bool]) {
+        match self {
+            Self::Cholesky(direct) => {
+                system.stiffen(selected, q, convexity, &mut direct.matrix);
+                direct.matrix.fix_slots(free, 1.0);
+            }
+            Self::ConjugateGradient(iterative) => {
+                system.stiffen(selected, q, convexity, &mut iterative.matrix);
+                iterative.matrix.fix_slots(free, 1.0);
             }
         }
     }

@@ -1,10 +1,14 @@
 //! How a fabric moves and where it comes to rest.
 
+pub mod chunks;
+mod few;
 pub mod grips;
 pub mod implicit_euler;
 pub mod linear;
 pub mod loop_shapes;
+mod remaining;
 mod scatter;
+mod selected;
 pub mod state;
 pub mod step;
 pub mod system;

@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::block_pattern::BlockPattern;
 
-use super::terms::{AnyTerm, ChunkOutput, Chunks, Term, Width};
+use super::chunks::Chunks;
+use super::terms::{AnyTerm, ChunkOutput, Term, Width};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing,
@@ -50,6 +51,9 @@ pub struct System {
     /// Planar places of blocks for a coarse space: columns and rows of the chart.
     pub(super) chart_place: Vec<[f64; 2]>,
 }
+
+/// Number of terms.
+pub(super) const TERMS: usize = 10;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -218,7 +222,7 @@ impl System {
         &self.chart_place
     }
 
-    fn terms(&self) -> [&dyn AnyTerm; 10] {
+    pub(super) fn terms(&self) -> [&dyn AnyTerm; TERMS] {
         [
             &self.segments,
             &self.bends,
@@ -296,13 +300,15 @@ impl System {
     /// The longest part of a step along which no segment's rest length falls below a tenth of what it is.
     #[must_use]
     pub fn longest_step(&self, q: &[f64], direction: &[f64]) -> f64 {
-        let shortest = |stencil: &[u32; 8]| {
-            let (a, b) = (stencil[3] as usize, stencil[7] as usize);
-            let rate = direction[b] - direction[a];
-            if rate < 0.0 { 0.9 * (q[b] - q[a]) / -rate } else { f64::INFINITY }
-        };
         let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
-        segments.map(shortest).reduce(|| f64::INFINITY, f64::min).min(1.0)
+        let longest = segments.map(|stencil| longest_step(stencil, q, |dof| direction[dof]));
+        longest.reduce(|| f64::INFINITY, f64::min).min(1.0)
+    }
+
+    /// As [`System::longest_step`], for some segments.
+    pub(super) fn longest_step_of(&self, segments: &[u32], q: &[f64], direction: impl Fn(usize) -> f64) -> f64 {
+        let stencils = segments.iter().map(|&index| &self.segments.set.stencils[index as usize]);
+        stencils.map(|stencil| longest_step(stencil, q, &direction)).fold(1.0, f64::min)
     }
 
     /// Largest ratio of a yarn segment's length to its rest length (a cast-on or bind-off is not one yarn), and smallest
@@ -333,6 +339,13 @@ impl System {
     pub fn yarn_at(&self, node: NodeId) -> f64 {
         self.yarn_at_node[node.index()]
     }
+}
+
+/// The longest part of a step along which a segment keeps a tenth of its rest length.
+fn longest_step(stencil: &[u32; 8], q: &[f64], direction: impl Fn(usize) -> f64) -> f64 {
+    let (a, b) = (stencil[3] as usize, stencil[7] as usize);
+    let rate = direction(b) - direction(a);
+    if rate < 0.0 { 0.9 * (q[b] - q[a]) / -rate } else { f64::INFINITY }
 }
 
 fn add_to_kind(sums: &mut Vec<(&'static str, f64)>, kind: &'static str, energy: f64) {

@@ -9,54 +9,12 @@ use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::check::Local;
 use wale_numerics::scalar::Scalar;
 
+use super::chunks::Chunks;
+use super::few::Few;
 use super::scatter::{NOWHERE, runs, scatter_gradient, scatter_hessian};
 use crate::energy::Element;
 use crate::fabric::coordinates::{BLOCK, Dof};
 use crate::fabric::elements::Elements;
-
-/// Cuts of the block rows into chunks; decided by the fabric's size alone.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Chunks {
-    bounds: Vec<usize>,
-}
-
-/// Blocks a chunk has at least, but for the smallest fabrics.
-const SMALLEST_CHUNK: usize = 1024;
-/// Chunks up to the size at which each has [`LARGE_CHUNK`] blocks: more would repeat more of the elements that straddle
-/// two.
-const MOST_CHUNKS: usize = 16;
-/// Blocks of a chunk of a large fabric.
-const LARGE_CHUNK: usize = 8192;
-
-impl Chunks {
-    /// Cuts `block_count` rows.
-    #[must_use]
-    pub fn new(block_count: usize) -> Self {
-        let most = MOST_CHUNKS.max(block_count / LARGE_CHUNK);
-        let count = (block_count / SMALLEST_CHUNK).clamp(1, most);
-        Self { bounds: (0..=count).map(|k| k * block_count / count).collect() }
-    }
-    /// First row of each chunk, and the number of rows.
-    #[must_use]
-    pub fn bounds(&self) -> &[usize] {
-        &self.bounds
-    }
-    /// Number of chunks.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        self.bounds.len() - 1
-    }
-    /// Rows of a chunk.
-    #[must_use]
-    pub fn rows(&self, chunk: usize) -> Range<usize> {
-        self.bounds[chunk]..self.bounds[chunk + 1]
-    }
-    /// The chunk of a row.
-    #[must_use]
-    pub fn of(&self, row: usize) -> usize {
-        self.bounds.partition_point(|&bound| bound <= row) - 1
-    }
-}
 
 /// The rows of gradient and matrix that one chunk writes.
 pub struct ChunkOutput<'a, 'm> {
@@ -224,6 +182,16 @@ pub trait AnyTerm: Send + Sync {
     fn chunk_energy(&self, chunk: usize, q: &[f64]) -> f64;
     /// Adds gradient and Hessian rows of every element that touches a chunk; returns the energy of those it owns.
     fn accumulate(&self, chunk: usize, q: &[f64], convexity: f64, out: &mut ChunkOutput<'_, '_>) -> f64;
+    /// The elements that touch a chunk.
+    fn of_chunk(&self, chunk: usize) -> &[u32];
+    /// Adds to `found` those of some elements that touch a block of which `place` is below a limit.
+    fn touching(&self, among: &[u32], place: &[u32], limit: u32, found: &mut Vec<u32>);
+    /// Energy of some elements \[J\].
+    fn energy_of(&self, list: &[u32], q: &[f64]) -> f64;
+    /// Adds gradient and Hessian of some elements to a system of few nodes.
+    fn linearise_few(&self, list: &[u32], q: &[f64], convexity: f64, few: &mut Few<'_>);
+    /// Adds to a whole matrix what some elements' convex Hessians are more than those of a convexity.
+    fn stiffen(&self, list: &[u32], q: &[f64], convexity: f64, rows: &Range<usize>, matrix: &mut MatrixRows<'_, '_>);
     /// Calls `pair` for every two blocks that an element couples.
     fn pairs(&self, pair: &mut dyn FnMut(u32, u32));
     /// Bytes that the term holds.
@@ -269,6 +237,50 @@ impl<E: Element<N>, const N: usize> AnyTerm for Term<E, N> {
             }),
             Some(MatrixRows::Single(matrix)) => self.linearise(chunk, q, convexity, rows, gradient, matrix),
             Some(MatrixRows::Double(matrix)) => self.linearise(chunk, q, convexity, rows, gradient, matrix),
+        }
+    }
+
+    fn of_chunk(&self, chunk: usize) -> &[u32] {
+        &self.lists[chunk].0
+    }
+
+    fn touching(&self, among: &[u32], place: &[u32], limit: u32, found: &mut Vec<u32>) {
+        let touches = |&&index: &&u32| {
+            let stencil = &self.set.stencils[index as usize];
+            stencil.iter().any(|&dof| place[dof as usize / BLOCK] < limit)
+        };
+        found.extend(among.iter().filter(touches));
+    }
+
+    fn energy_of(&self, list: &[u32], q: &[f64]) -> f64 {
+        let energy = |&index: &u32| self.set.elements[index as usize].energy(&self.set.local(index as usize, q));
+        list.iter().map(energy).sum()
+    }
+
+    fn linearise_few(&self, list: &[u32], q: &[f64], convexity: f64, few: &mut Few<'_>) {
+        for &index in list {
+            let index = index as usize;
+            let mut local = Local::zero();
+            self.set.elements[index].add_blended(&self.set.local(index, q), convexity, &mut local);
+            few.add(&self.set.stencils[index], &local);
+        }
+    }
+
+    fn stiffen(&self, list: &[u32], q: &[f64], convexity: f64, rows: &Range<usize>, matrix: &mut MatrixRows<'_, '_>) {
+        for &index in list {
+            let index = index as usize;
+            let q = self.set.local(index, q);
+            let (mut convex, mut blended) = (Local::zero(), Local::zero());
+            self.set.elements[index].add_blended(&q, 1.0, &mut convex);
+            self.set.elements[index].add_blended(&q, convexity, &mut blended);
+            for (to, from) in convex.hessian.iter_mut().flatten().zip(blended.hessian.iter().flatten()) {
+                *to -= from;
+            }
+            let (stencil, places) = (&self.set.stencils[index], &self.places[self.first_place[index] as usize..]);
+            match matrix {
+                MatrixRows::Single(matrix) => scatter_hessian(stencil, &convex.hessian, rows, places, matrix),
+                MatrixRows::Double(matrix) => scatter_hessian(stencil, &convex.hessian, rows, places, matrix),
+            }
         }
     }
 

@@ -9,12 +9,13 @@ pub use start::{Start, StartReport};
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::dynamics::State;
+use crate::dynamics::chunks::Chunks;
 use crate::dynamics::grips::{GripReport, Grips};
 use crate::dynamics::implicit_euler::{Newton, NewtonReport, NewtonSettings, StepError};
 use crate::dynamics::linear::LinearSettings;
 use crate::dynamics::step::Touch;
 use crate::dynamics::system::{Energies, System, Workspace};
-use crate::dynamics::{State, terms};
 use crate::energy::Load;
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::model::{FabricCard, Frame, Network, Plan, YarnCard};
@@ -327,7 +328,7 @@ impl Simulation {
     /// Number of chunks that sums are cut into.
     #[must_use]
     pub fn chunk_count(&self) -> usize {
-        terms::Chunks::new(self.system.coordinates.block_count()).count()
+        Chunks::new(self.system.coordinates.block_count()).count()
     }
 }
 
