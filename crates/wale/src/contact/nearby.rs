@@ -17,8 +17,8 @@ pub struct Nearby {
     candidates: Vec<[u32; 2]>,
     /// Cell and node, sorted.
     cells: Vec<(u64, u32)>,
-    /// Pairs by node, and the pairs given last.
-    by_node: Vec<Vec<u32>>,
+    /// Pairs by parts of the nodes, and the pairs given last.
+    parts: Vec<Vec<[u32; 2]>>,
     pairs: Vec<[u32; 2]>,
     /// First of each cell's nodes.
     start: HashMap<u64, u32>,
@@ -26,6 +26,8 @@ pub struct Nearby {
 
 /// How much further than asked it looks.
 const FURTHER: f64 = 1.4;
+/// Nodes of a part.
+const PART: usize = 1024;
 /// Bits of a cell's number along one axis.
 const BITS: u32 = 21;
 
@@ -79,12 +81,11 @@ impl Nearby {
         for (place, &(cell, _)) in self.cells.iter().enumerate() {
             self.start.entry(cell).or_insert(place as u32);
         }
-        self.by_node.resize_with(count, Vec::new);
+        self.parts.resize_with(count.div_ceil(PART), Vec::new);
         let (cells, start) = (&self.cells, &self.start);
         let (reach2, apart2) = (reach * reach, apart * apart);
-        self.by_node.par_iter_mut().with_min_len(1024).enumerate().for_each(|(a, found)| {
-            found.clear();
-            let x = now(a);
+        let near = |a: usize, found: &mut Vec<[u32; 2]>| {
+            let (before, x) = (found.len(), now(a));
             let cell = cell_of(x);
             for z in cell.z - 1..=cell.z + 1 {
                 for y in cell.y - 1..=cell.y + 1 {
@@ -97,18 +98,20 @@ impl Nearby {
                                 && x.distance_squared(now(b as usize)) < reach2
                                 && layout[a].distance_squared(layout[b as usize]) > apart2
                             {
-                                found.push(b);
+                                found.push([a as u32, b]);
                             }
                         }
                     }
                 }
             }
-            found.sort_unstable();
+            found[before..].sort_unstable();
+        };
+        self.parts.par_iter_mut().enumerate().for_each(|(part, found)| {
+            found.clear();
+            (part * PART..count.min((part + 1) * PART)).for_each(|a| near(a, found));
         });
         self.candidates.clear();
-        for (a, found) in self.by_node.iter().enumerate() {
-            self.candidates.extend(found.iter().map(|&b| [a as u32, b]));
-        }
+        self.candidates.extend(self.parts.iter().flatten());
     }
 }
 

@@ -177,7 +177,14 @@ impl<'a> Builder<'a> {
         for column in 0..self.chart.column_count() {
             let tie = |onward| Step { slides: false, ..step(column, PassKind::Edge, onward) };
             steps.push(tie(SegmentKind::Edge));
+            // A half hitch: the yarn goes up the far leg first and crosses itself at the tie as it comes down the near one.
+            let up = steps.len();
             self.upward(None, column, &mut steps);
+            steps[up..].reverse();
+            let kinds = [SegmentKind::Stitch, SegmentKind::Head, SegmentKind::Stitch, SegmentKind::Edge];
+            for (step, onward) in steps[up..].iter_mut().zip(kinds) {
+                step.onward = onward;
+            }
             steps.push(tie(SegmentKind::Chain));
         }
         steps
