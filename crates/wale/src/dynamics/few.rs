@@ -275,7 +275,8 @@ mod tests {
     fn few_nodes_find_their_minimum_and_no_other_moves() {
         let (system, start) = swatch();
         let free = system.coordinates.free().to_vec();
-        let hot = [system.pattern().rows() as u32 / 2, 7];
+        let rows = system.pattern().rows() as u32;
+        let hot = [rows / 2, rows / 4];
         let (mut q, mut work, mut gradient) = (start.clone(), Workspace::default(), vec![0.0; start.len()]);
         for &node in &hot {
             q[BLOCK * node as usize + 2] += 2e-3;
