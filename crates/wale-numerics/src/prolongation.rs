@@ -60,6 +60,14 @@ impl Prolongation {
         Self::new(nodes_across * (axes[1].2 + 1), corners, weights)
     }
 
+    /// Leaves the blocks from `first` on out of all coarse motions: they have no place.
+    #[must_use]
+    pub fn without_blocks_from(mut self, first: usize) -> Self {
+        let first = first.min(self.weights.len());
+        self.weights[first..].fill([0.0; 4]);
+        self
+    }
+
     /// Number of coarse nodes.
     pub fn coarse_nodes(&self) -> usize {
         self.coarse_nodes

@@ -67,7 +67,7 @@ fn relaxed(chart: &Chart, proportions: &LoopProportions) -> Option<(TileEquilibr
         twist: 0.0,
     };
     let card = proportions.card(&yarn, 1.0);
-    let tile = knit::tile(chart, &card);
+    let tile = knit::tile(chart, &card).expect("a repeat");
     let run = |seed| relax_tile(&tile, &yarn, &card, &TileSettings { seed, tolerance: 1e-4, ..Default::default() });
     let runs: Vec<_> = (1..=STARTS).map(run).collect();
     let best = runs.iter().min_by(|a, b| a.energy.total_cmp(&b.energy))?.clone();

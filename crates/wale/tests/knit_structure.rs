@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, LoopProportions, Network, NodeId, YarnCard, YarnId};
+use wale::model::{FabricCard, LoopProportions, Network, NodeId, PassKind, YarnCard, YarnId};
+use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::{Chart, Side, Working, knit};
 
 fn cards() -> (YarnCard, FabricCard) {
@@ -76,6 +77,99 @@ fn nodes_blocks_and_arc_lengths() {
     }
 }
 
+/// Lace of yarn-overs and every decrease, seen from the front; each row takes as many stitches as it makes.
+fn lace() -> Chart {
+    let rows = [
+        "kkkkkkkkkk",
+        "/o\\okkrolo",
+        "pppppppppp",
+        ">ookk<ookk",
+        "kkkkkkkkkk",
+        "o^okRookkk",
+        "kkkkkkkkkk",
+        "Lookovokkk",
+    ];
+    let rows: Vec<String> = rows.iter().rev().map(|row| (*row).to_owned()).collect();
+    read_symbols(&rows, &default_legend()).unwrap()
+}
+
+#[test]
+fn decreases_stack_their_loops_and_yarn_overs_have_no_feet() {
+    let (yarn, card) = cards();
+    let chart = lace().repeat(20, 16).unwrap();
+    for working in workings() {
+        let network = knit::fabric(&chart, working, &card);
+        assert_eq!(network.loops.len(), chart.loop_count());
+        for y in 0..network.yarn_count() {
+            let arcs = &network.arc_length[network.yarn_passes(YarnId::new(y))];
+            assert!(arcs.windows(2).all(|pair| pair[1] > pair[0]));
+        }
+        let yarn_of = network.pass_yarn();
+        let mut contacts = network.stitches.iter();
+        for info in &network.loops {
+            let stitch = chart.rows()[info.row as usize][info.column as usize];
+            assert_eq!(info.nodes.len(), if stitch.takes() == 0 { 0 } else { 4 });
+            for node in &info.nodes {
+                assert_eq!(network.stack(*node).len(), 1 + stitch.takes(), "the loop and those that it takes");
+            }
+            for _ in 0..if stitch.takes() == 0 { 0 } else { 2 } {
+                let contact = contacts.next().unwrap();
+                assert_eq!(contact.passes.len(), 1 + stitch.takes());
+                assert_eq!(contact.pairs.len(), 2 * stitch.takes(), "around each of them, not they around each other");
+                for [first, second] in &contact.passes {
+                    assert_eq!(yarn_of[first.index()], yarn_of[second.index()]);
+                    assert_eq!(first.0.abs_diff(second.0), 1, "a contact is a segment of every yarn in it");
+                }
+            }
+        }
+        assert!(contacts.next().is_none());
+        // Every loop below is held by exactly one: each of its rows' loops appears in the stacks above it.
+        let stacked: usize =
+            network.loops.iter().map(|info| info.nodes.first().map_or(0, |node| network.stack(*node).len() - 1)).sum();
+        assert_eq!(stacked, chart.loop_count(), "rows take what the rows below them make");
+        let system = System::new(&network, &yarn, &card);
+        assert!(system.coordinates.block_count() > network.node_count(), "stacks have more than five coordinates");
+    }
+}
+
+#[test]
+fn a_decrease_leans_as_its_name_says() {
+    let (_, card) = cards();
+    for (symbol, left_in_front) in [('/', true), ('\\', false), ('r', true), ('l', false)] {
+        let row = format!("k{symbol}ok");
+        let chart = read_symbols(&[row.as_str(), "kkkk"], &default_legend()).unwrap();
+        for working in workings() {
+            let network = knit::fabric(&chart, working, &card);
+            let decrease = network.loops.iter().find(|info| (info.row, info.column) == (1, 1)).unwrap();
+            let knit = decrease.knit;
+            assert_eq!(knit, matches!(symbol, '/' | '\\'));
+            // The middles of the two loops below, along the yarn, tell their passes apart.
+            let [left, right] = [1, 2].map(|column| {
+                let info = network.loops.iter().find(|info| (info.row, info.column) == (0, column)).unwrap();
+                let legs = [1, 2].map(|corner| {
+                    let mut own = network.stack(info.nodes[corner]).iter();
+                    own.find(|pass| network.pass_kind[pass.index()] == PassKind::Leg).unwrap().index()
+                });
+                legs[0] + legs[1]
+            });
+            for (corner, node) in decrease.nodes.iter().enumerate() {
+                let stack = network.stack(*node);
+                let foot = corner == 0 || corner == 3;
+                let near = |pass: &wale::model::PassId| {
+                    let to = |other: usize| (2 * pass.index()).abs_diff(other);
+                    if to(left) < to(right) { 'l' } else { 'r' }
+                };
+                let parents: Vec<char> = if foot == knit {
+                    stack[..2].iter().map(near).collect()
+                } else {
+                    stack[1..].iter().map(near).collect()
+                };
+                assert_eq!(parents, if left_in_front { ['l', 'r'] } else { ['r', 'l'] }, "{symbol} corner {corner}");
+            }
+        }
+    }
+}
+
 /// Which nodes meet along yarns and in which order they are stacked, by place on the chart; without direction.
 fn joined(network: &Network) -> (BTreeSet<String>, BTreeSet<String>) {
     let own: BTreeSet<usize> = network.loops.iter().flat_map(|info| &info.nodes).map(|n| n.index()).collect();
@@ -114,15 +208,20 @@ fn the_way_a_row_is_worked_does_not_show() {
     let (_, card) = cards();
     for chart in charts() {
         let chart = chart.repeat(6, 6).unwrap();
-        let [a, b, _] = workings().map(|working| joined(&knit::fabric(&chart, working, &card)));
-        assert_eq!(a, b);
+        check_both_ways(&chart, &card);
     }
+    check_both_ways(&lace(), &card);
+}
+
+fn check_both_ways(chart: &Chart, card: &FabricCard) {
+    let [a, b, _] = workings().map(|working| joined(&knit::fabric(chart, working, card)));
+    assert_eq!(a, b);
 }
 
 #[test]
 fn knits_and_purls_mirror_each_other() {
     let (_, card) = cards();
-    let (knits, purls) = (knit::tile(&Chart::stockinette(), &card), knit::tile(&Chart::reverse_stockinette(), &card));
+    let (knits, purls) = (knit::tile(&Chart::stockinette(), &card).unwrap(), knit::tile(&Chart::reverse_stockinette(), &card).unwrap());
     for (a, b) in knits.stitches.iter().zip(&purls.stitches) {
         assert_eq!(a.wrap_sign, -b.wrap_sign);
     }

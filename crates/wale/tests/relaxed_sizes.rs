@@ -39,7 +39,7 @@ fn sizes_relative_to_stockinette() {
     let mut squares = Vec::new();
     println!("pattern        wale against measured, relative to stockinette: width  height   error %");
     for (name, chart, width, height) in swatches {
-        let tile = knit::tile(&chart, &card);
+        let tile = knit::tile(&chart, &card).unwrap();
         let runs =
             (1..=STARTS).map(|seed| relax_tile(&tile, &yarn, &card, &TileSettings { seed, ..Default::default() }));
         let best = runs.min_by(|a, b| a.energy.total_cmp(&b.energy)).unwrap();

@@ -1,4 +1,4 @@
-//! How hard the two yarns of a contact node press on each other.
+//! How hard the yarns of a contact node press on each other.
 
 use rayon::prelude::*;
 use wale_numerics::jet::vector3::{add, dot, scale, sub};
@@ -7,20 +7,42 @@ use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
 use crate::model::{Network, NodeId, PassId, SegmentKind};
 
-/// Compression of two-yarn contact nodes from the tension of their yarns.
+/// Compression of contact nodes from the tension of their yarns.
 ///
-/// `λ = ½ |P (F₁ − F₂)|`, `F_i` the net pull of yarn `i` on the node, `P` the projection across the directions of both
-/// yarns there: what one pulls along itself, the other holds by friction.
+/// Two yarns: `λ = ½ |P (F₁ − F₂)|`, `F_i` the net pull of yarn `i` on the node, `P` the projection across the directions
+/// of both yarns there: what one pulls along itself, the other holds by friction.
+///
+/// A stack, of the loop that was worked and the `n − 1` it was worked into: each yarn `i`, counted from that loop, is
+/// pulled by `f_i = d·F_i` along `d = P (F₁ − Σ F_j)`, and the compressions of neighbours are the non-negative ones that
+/// leave least of it: `min Σ (f_i − λ_i + λ_{i−1})²`, `λ ≥ 0`     [Cirio2017, Eq. 3]
 ///
 /// Differs from the paper: [Cirio2017, section 4.3] projects the forces on a fitted normal after offsetting the yarns
-/// by their radii. For two clasped yarns the resultant needs no normal, has no sign to choose, and gives the capstan
-/// law (tests `capstan`, `a_belt_pulled_over_pegs_has_the_capstan_ratio`).
+/// by their radii. For clasped yarns the resultant needs no normal, has no sign to choose, and gives the capstan
+/// law (tests `capstan`, `a_belt_pulled_over_pegs_has_the_capstan_ratio`). Its Eq. 4, which sets negative compressions to
+/// zero one by one, is not the least-squares answer (test `stacks_press_by_least_squares`).
 #[derive(Clone, Debug, Default)]
 pub struct Compression {
     /// The two passes of each two-pass node.
     contacts: Vec<[Neighbours; 2]>,
-    /// The contact of each pass, if it has one.
+    /// Nodes of more yarns.
+    stacks: Vec<Stack>,
+    /// Number of contacts between neighbours of the stacks.
+    stacked: usize,
+    /// The contact of each pass that slides against yarns that cross it.
     contact_of: Vec<Option<u32>>,
+    /// Contacts of parallel yarns: contact, the pass nearer to the loop that was worked, and the one beyond it.
+    parallel: Vec<(usize, [PassId; 2])>,
+}
+
+/// Most yarns of a stack.
+const MOST_YARNS: usize = 4;
+
+/// The passes of a node of more than two yarns.
+#[derive(Clone, Copy, Debug)]
+struct Stack {
+    /// The loop that was worked, then those it was worked into, from that side; as many as there are.
+    yarns: [Neighbours; MOST_YARNS],
+    count: usize,
 }
 
 /// Blocks and slots of a pass and of the passes before and after it; a missing one is the pass itself.
@@ -48,19 +70,47 @@ impl Compression {
                 slot: ends.map(|p| coordinates.slot(p) as u32),
             }
         };
-        let mut compression = Self { contacts: Vec::new(), contact_of: vec![None; network.pass_count()] };
+        let mut compression = Self { contact_of: vec![None; network.pass_count()], ..Self::default() };
+        let mut deeper = Vec::new();
         for node in 0..network.node_count() {
-            if let [a, b] = *network.stack(NodeId::new(node)) {
-                let index = compression.contacts.len() as u32;
-                compression.contacts.push([of(a), of(b)]);
-                compression.contact_of[a.index()] = Some(index);
-                compression.contact_of[b.index()] = Some(index);
+            match *network.stack(NodeId::new(node)) {
+                [a, b] => {
+                    let index = compression.contacts.len() as u32;
+                    compression.contacts.push([of(a), of(b)]);
+                    compression.contact_of[a.index()] = Some(index);
+                    compression.contact_of[b.index()] = Some(index);
+                }
+                [] | [_] => {}
+                ref more => deeper.push(more.to_vec()),
             }
+        }
+        for mut stack in deeper {
+            stack.truncate(MOST_YARNS);
+            // The yarn that differs in kind from its neighbour is the loop that was worked; it lies at one end.
+            let kind = |k: usize| network.pass_kind[stack[k].index()];
+            if kind(0) == kind(1) {
+                stack.reverse();
+            }
+            let first = compression.contacts.len() + compression.stacked;
+            let yarns = std::array::from_fn(|k| of(stack[k.min(stack.len() - 1)]));
+            compression.stacks.push(Stack { yarns, count: stack.len() });
+            compression.contact_of[stack[0].index()] = Some(first as u32);
+            compression.contact_of[stack[1].index()] = Some(first as u32);
+            compression
+                .parallel
+                .extend(stack.windows(2).enumerate().skip(1).map(|(k, pair)| (first + k, [pair[0], pair[1]])));
+            compression.stacked += stack.len() - 1;
         }
         compression
     }
 
-    /// The contact that a pass takes part in.
+    /// Contacts of parallel yarns in stacks: contact, the pass nearer to the loop that was worked, and the one beyond.
+    #[must_use]
+    pub fn parallel(&self) -> &[(usize, [PassId; 2])] {
+        &self.parallel
+    }
+
+    /// The contact of a pass with the yarns that cross it.
     #[must_use]
     pub fn contact_of(&self, pass: PassId) -> Option<usize> {
         self.contact_of[pass.index()].map(|index| index as usize)
@@ -69,24 +119,92 @@ impl Compression {
     /// Number of contacts.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.contacts.len()
+        self.contacts.len() + self.stacked
     }
 
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.contacts.is_empty()
+        self.len() == 0
     }
 
     /// Compressions `λ` \[N\], one per contact, of a fabric at `q` whose yarn, and whose cast-on and bind-off, have these
     /// stretch stiffnesses \[N\].
     pub fn evaluate(&self, q: &[f64], stiffness: [f64; 2], out: &mut Vec<f64>) {
-        out.resize(self.contacts.len(), 0.0);
-        out.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, [a, b])| {
+        out.resize(self.len(), 0.0);
+        let (pairs, mut stacked) = out.split_at_mut(self.contacts.len());
+        for stack in &self.stacks {
+            let (own, rest) = stacked.split_at_mut(stack.count - 1);
+            stack.press(q, stiffness, own);
+            stacked = rest;
+        }
+        pairs.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, [a, b])| {
             let ((fa, ta), (fb, tb)) = (a.pull(q, stiffness), b.pull(q, stiffness));
             let across = across_both(sub(fa, fb), ta, tb);
             *lambda = 0.5 * dot(across, across).sqrt();
         });
+    }
+}
+
+impl Stack {
+    fn press(&self, q: &[f64], stiffness: [f64; 2], lambda: &mut [f64]) {
+        let pulls = self.yarns.map(|yarn| yarn.pull(q, stiffness));
+        let (child, parents) = (pulls[0], &pulls[1..self.count]);
+        let parents_pull = parents.iter().fold([0.0; 3], |sum, (force, _)| add(sum, *force));
+        // The parents run side by side, one way or the other.
+        let along =
+            parents.iter().fold(
+                [0.0; 3],
+                |sum: [f64; 3], (_, along)| {
+                    if dot(sum, *along) < 0.0 { sub(sum, *along) } else { add(sum, *along) }
+                },
+            );
+        let length = dot(along, along).sqrt();
+        let along = if length > 1e-6 { scale(along, 1.0 / length) } else { [0.0; 3] };
+        let across = across_both(sub(child.0, parents_pull), child.1, along);
+        let size = dot(across, across).sqrt();
+        if size == 0.0 {
+            return lambda.fill(0.0);
+        }
+        let pulled = pulls.map(|(force, _)| dot(force, across) / size);
+        stack_compressions(&pulled[..self.count], lambda);
+    }
+}
+
+/// The non-negative `λ` of `min Σ (f_i − λ_i + λ_{i−1})²`: of all sets of contacts that may be open the one that is
+/// consistent and leaves least.
+fn stack_compressions(pulled: &[f64], lambda: &mut [f64]) {
+    let contacts = lambda.len();
+    let mut best = f64::INFINITY;
+    lambda.fill(0.0);
+    for closed in 0..1u32 << contacts {
+        let mut trial = [0.0; MOST_YARNS];
+        let mut first = 0;
+        // Closed contacts in a row press a group of yarns that shares what is left evenly.
+        while first <= contacts {
+            let mut last = first;
+            while last < contacts && closed >> last & 1 == 1 {
+                last += 1;
+            }
+            let group = &pulled[first..=last];
+            let mean = group.iter().sum::<f64>() / group.len() as f64;
+            let mut pressed = 0.0;
+            for k in first..last {
+                pressed += pulled[k] - mean;
+                trial[k] = pressed;
+            }
+            first = last + 1;
+        }
+        let left: f64 = (0..=contacts)
+            .map(|i| {
+                let (own, before) = (if i < contacts { trial[i] } else { 0.0 }, if i > 0 { trial[i - 1] } else { 0.0 });
+                (pulled[i] - own + before).powi(2)
+            })
+            .sum();
+        if trial[..contacts].iter().all(|&l| l >= 0.0) && left < best {
+            best = left;
+            lambda.copy_from_slice(&trial[..contacts]);
+        }
     }
 }
 
@@ -159,8 +277,31 @@ mod tests {
         }
         (q[18], q[23]) = (-1.0, 1.0);
         let holder = Neighbours { block: [3, 0, 4], slot: [18, 4, 23], chain: [false; 2] };
-        Compression { contacts: vec![[yarn, holder]], contact_of: Vec::new() }.evaluate(&q, [1.0; 2], &mut out);
+        Compression { contacts: vec![[yarn, holder]], ..Compression::default() }.evaluate(&q, [1.0; 2], &mut out);
         out[0]
+    }
+
+    #[test]
+    fn stacks_press_by_least_squares() {
+        let press = |pulled: &[f64]| {
+            let mut lambda = vec![0.0; pulled.len() - 1];
+            stack_compressions(pulled, &mut lambda);
+            lambda
+        };
+        assert_eq!(press(&[2.0, -4.0]), [3.0]);
+        let three = press(&[4.0, 0.0, -2.0]);
+        assert!((three[0] - 10.0 / 3.0).abs() < 1e-12 && (three[1] - 8.0 / 3.0).abs() < 1e-12);
+        // Eq. 4 of the paper gives 8/3 and 4/3 here.
+        assert_eq!(press(&[4.0, 0.0, 2.0]), [2.0, 0.0]);
+        assert_eq!(press(&[-1.0, 1.0]), [0.0]);
+        // Against all directions: what is left cannot be lessened by any non-negative change.
+        let pulled = [3.0, -1.0, 0.5, -2.0];
+        let lambda = press(&pulled);
+        let left = |i: usize| pulled[i] - if i < 3 { lambda[i] } else { 0.0 } + if i > 0 { lambda[i - 1] } else { 0.0 };
+        for (k, &pressed) in lambda.iter().enumerate() {
+            let slope = left(k + 1) - left(k);
+            assert!(slope > -1e-12 && (pressed * slope).abs() < 1e-12, "contact {k}");
+        }
     }
 
     #[test]

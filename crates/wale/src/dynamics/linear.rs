@@ -186,7 +186,8 @@ impl Linear {
                 right_side: vec![0.0; free.len()],
             })));
         }
-        let prolongation = Prolongation::bilinear(system.chart_place(), COARSE_LOOPS);
+        let prolongation = Prolongation::bilinear(system.chart_place(), COARSE_LOOPS)
+            .without_blocks_from(system.coordinates.node_count());
         // A domain or two of a fabric nearly always need a shift; found by trial it costs two factors more.
         let incomplete = IncompleteCholeskySettings {
             shifts: vec![4e-3, 1.6e-2, 6.4e-2, 0.25, 1.0],

@@ -1,12 +1,13 @@
 //! Rest-shape compensation: the loop shapes of a relaxed tile laid out over a whole fabric [Cirio2017, section 4.1].
 
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 
 use super::tile_equilibrium::TileEquilibrium;
 use crate::fabric::Coordinates;
-use crate::model::{Network, PassId, SegmentKind, YarnId};
+use crate::model::{LoopInfo, Network, PassId, SegmentKind, YarnId};
 
 /// Gives every loop of a fabric the shape and the yarn of its loop in a relaxed tile; `round` rolls the sheet up.
 ///
@@ -14,19 +15,11 @@ use crate::model::{Network, PassId, SegmentKind, YarnId};
 /// where the mean stitch density puts them.
 pub fn lay_loop_shapes(network: &mut Network, tile: &Network, relaxed: &TileEquilibrium, round: bool) {
     let coordinates = Coordinates::new(tile);
-    let [tile_rows, tile_columns] = tile.chart_size.map(|n| n as usize);
     let (wale, course) = (relaxed.wale_spacing, relaxed.course_spacing);
-    let place = |row: usize, column: usize, corner: usize| {
-        let info = &tile.loops[(row % tile_rows) * tile_columns + column % tile_columns];
-        let shift = DVec3::new(
-            (column / tile_columns * tile_columns) as f64 * wale,
-            (row / tile_rows * tile_rows) as f64 * course,
-            0.0,
-        );
-        coordinates.position_of(info.nodes[corner].index(), &relaxed.unknowns) + shift
-    };
+    let period = [f64::from(tile.chart_size[1]) * wale, f64::from(tile.chart_size[0]) * course];
+    let known = TileLoops::new(tile);
     // Where the tile lies against its own chart, so that nodes without a loop follow.
-    let count = (4 * tile.loops.len()) as f64;
+    let count = tile.loops.iter().map(|info| info.nodes.len()).sum::<usize>().max(1) as f64;
     let offset = tile
         .loops
         .iter()
@@ -40,8 +33,10 @@ pub fn lay_loop_shapes(network: &mut Network, tile: &Network, relaxed: &TileEqui
     let mut flat: Vec<DVec3> =
         network.chart_place.iter().map(|[column, row]| offset + DVec3::new(column * wale, row * course, 0.0)).collect();
     for info in &network.loops {
-        for (corner, node) in info.nodes.iter().enumerate() {
-            flat[node.index()] = place(info.row as usize, info.column as usize, corner);
+        let Some((like, image)) = known.like(info) else { continue };
+        let shift = DVec3::new(image[0] * period[0], image[1] * period[1], 0.0);
+        for (node, like) in info.nodes.iter().zip(&like.nodes) {
+            flat[node.index()] = coordinates.position_of(like.index(), &relaxed.unknowns) + shift;
         }
     }
     lay_arc_lengths(network, tile, relaxed, &coordinates, &flat);
@@ -54,6 +49,27 @@ pub fn lay_loop_shapes(network: &mut Network, tile: &Network, relaxed: &TileEqui
         } else {
             (*x, DVec3::Z)
         };
+    }
+}
+
+/// The loops of a tile, to be found by those of a fabric that repeats it.
+struct TileLoops<'a> {
+    tile: &'a Network,
+    at: HashMap<(u32, u32), &'a LoopInfo>,
+}
+
+impl<'a> TileLoops<'a> {
+    fn new(tile: &'a Network) -> Self {
+        Self { tile, at: tile.loops.iter().map(|info| ((info.row, info.column), info)).collect() }
+    }
+
+    /// The loop of the tile that a fabric's loop is like, and how many periods apart they lie.
+    fn like(&self, info: &LoopInfo) -> Option<(&'a LoopInfo, [f64; 2])> {
+        let rows = self.tile.chart_size[0];
+        let row = info.row % rows;
+        let columns = self.tile.row_places[row as usize];
+        let like = self.at.get(&(row, info.column % columns))?;
+        Some((like, [f64::from(info.column / columns), f64::from(info.row / rows)]))
     }
 }
 
@@ -98,15 +114,15 @@ fn lay_arc_lengths(
 
 /// For each pass of the fabric the tile's pass at the same corner of the same loop.
 fn likes(network: &Network, tile: &Network) -> Vec<Option<PassId>> {
-    let [tile_rows, tile_columns] = tile.chart_size.map(|n| n as usize);
+    let known = TileLoops::new(tile);
     let mut likes = vec![None; network.pass_count()];
     for info in &network.loops {
-        let like = &tile.loops[(info.row as usize % tile_rows) * tile_columns + info.column as usize % tile_columns];
+        let Some((like, _)) = known.like(info) else { continue };
         for (node, tile_node) in info.nodes.iter().zip(&like.nodes) {
-            for pass in network.stack(*node) {
-                let kind = network.pass_kind[pass.index()];
-                likes[pass.index()] =
-                    tile.stack(*tile_node).iter().copied().find(|other| tile.pass_kind[other.index()] == kind);
+            // Stacks are in the same order; where the bind-off takes the place of a loop, the kinds differ.
+            for (pass, like) in network.stack(*node).iter().zip(tile.stack(*tile_node)) {
+                let alike = network.pass_kind[pass.index()] == tile.pass_kind[like.index()];
+                likes[pass.index()] = alike.then_some(*like);
             }
         }
     }
@@ -135,7 +151,7 @@ mod tests {
         };
         let card = LoopProportions::default().card(&yarn, 9.5e-3);
         let chart = Chart::rib(2, 2).unwrap();
-        let tile = knit::tile(&chart, &card);
+        let tile = knit::tile(&chart, &card).unwrap();
         let relaxed = relax_tile(&tile, &yarn, &card, &TileSettings::default());
         assert!(relaxed.converged, "residual {:e}", relaxed.residual);
         for working in [Working::default(), Working::Round] {

@@ -7,10 +7,10 @@ use super::linear::Coupling;
 use super::state::State;
 use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
-use crate::energy::{Inertia, ObstacleContact, Rate, SelfContact};
+use crate::energy::{Inertia, ObstacleContact, ParallelSpring, Rate, SelfContact};
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::mechanics::chain_stiffness;
-use crate::model::Obstacle;
+use crate::model::{Obstacle, PassId};
 
 /// Where a node touches an obstacle during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +74,23 @@ impl System {
                 element.limit = if friction { mu * lambda[contact].max(least) } else { 0.0 };
             },
         );
+        for (ParallelSpring(spring), (contact, pair)) in
+            self.parallel.set.elements.iter_mut().zip(self.compression.parallel())
+        {
+            spring.anchor = state.anchors[pair[1].index()];
+            spring.limit = if friction { mu * lambda[*contact].max(least) } else { 0.0 };
+        }
+    }
+
+    /// Friction anchors of a fabric at `q` that nothing has pulled at: where every pass is, and of parallel yarns how far
+    /// one is from the other.
+    pub(crate) fn anchors_at(&self, q: &[f64]) -> Vec<f64> {
+        let passes = 0..self.coordinates.pass_count();
+        let mut anchors: Vec<f64> = passes.map(|p| q[self.coordinates.slot(PassId::new(p))]).collect();
+        for (_, [near, far]) in self.compression.parallel() {
+            anchors[far.index()] = q[self.coordinates.slot(*far)] - q[self.coordinates.slot(*near)];
+        }
+        anchors
     }
 
     /// Moves the friction anchors of the passes to where the step left them.
@@ -82,6 +99,11 @@ impl System {
             self.friction.set.elements.iter().zip(&self.friction.set.stencils).zip(&self.rubbing)
         {
             anchors[pass.index()] = element.dragged_anchor(q[stencil[0] as usize]);
+        }
+        let parallel = self.parallel.set.elements.iter().zip(&self.parallel.set.stencils);
+        for ((ParallelSpring(spring), stencil), (_, pair)) in parallel.zip(self.compression.parallel()) {
+            let [near, far] = stencil.map(|slot| q[slot as usize]);
+            anchors[pair[1].index()] = spring.dragged_anchor(far - near);
         }
     }
 

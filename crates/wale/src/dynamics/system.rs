@@ -11,8 +11,8 @@ use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
-    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, Rate, SelfContact, Spacing,
-    StitchLength, Stretch, Wrapping,
+    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, ParallelSpring, Rate,
+    SelfContact, Spacing, StitchLength, Stretch, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -36,6 +36,8 @@ pub struct System {
     pub(super) stitch_length: Term<StitchLength, 2>,
     pub(super) spacing: Term<Spacing, 2>,
     pub(super) friction: Term<AnchoredSpring, 1>,
+    /// Friction of parallel yarns in stacks, in the order of [`Compression::parallel`].
+    pub(super) parallel: Term<ParallelSpring, 2>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
     pub(super) self_contacts: Term<SelfContact, 6>,
     pub(super) loads: Term<Load, 3>,
@@ -53,7 +55,7 @@ pub struct System {
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 10;
+pub(super) const TERMS: usize = 11;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -112,6 +114,11 @@ impl System {
                 rubbing.push((pass, contact));
             }
         }
+        let mut parallel = Elements::default();
+        for (_, pair) in compression.parallel() {
+            let spring = AnchoredSpring { stiffness: card.anchor_stiffness, limit: 0.0, anchor: 0.0 };
+            parallel.push(ParallelSpring(spring), pair.map(|pass| dof(coordinates.slot(pass))));
+        }
         let mut yarn_at_node = vec![0.0; network.node_count()];
         let initial = coordinates.initial(network);
         for stencil in &segments.stencils {
@@ -133,6 +140,7 @@ impl System {
             stitch_length: Term::new(mechanics.stitch_length, &chunks),
             spacing: Term::new(mechanics.spacing, &chunks),
             friction: Term::new(friction, &chunks),
+            parallel: Term::new(parallel, &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             self_contacts: Term::new(Elements::default(), &chunks),
             nearby: Nearby::default(),
@@ -157,6 +165,7 @@ impl System {
         system.stitch_length.locate(&system.pattern);
         system.spacing.locate(&system.pattern);
         system.friction.locate(&system.pattern);
+        system.parallel.locate(&system.pattern);
         system
     }
 
@@ -230,6 +239,7 @@ impl System {
             &self.stitch_length,
             &self.spacing,
             &self.friction,
+            &self.parallel,
             &self.obstacles,
             &self.self_contacts,
             &self.loads,

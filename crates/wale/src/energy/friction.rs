@@ -59,6 +59,25 @@ impl Element<1> for AnchoredSpring {
     }
 }
 
+/// Coulomb friction between two parallel yarns of a stack: the same spring on how far one has slid against the other.
+///
+/// Local coordinates: `u` of the one and of the other \[m\]; the anchor is that of their difference `u₂ − u₁`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParallelSpring(pub AnchoredSpring);
+
+impl Element<2> for ParallelSpring {
+    const NAME: &'static str = AnchoredSpring::NAME;
+
+    fn energy<T: Real>(&self, q: &[T; 2]) -> T {
+        self.0.energy(&[q[1] - q[0]])
+    }
+
+    fn convex(&self, q: &[f64; 2]) -> Local<2> {
+        let Local { energy, gradient: [g], hessian: [[h]] } = self.0.convex(&[q[1] - q[0]]);
+        Local { energy, gradient: [-g, g], hessian: [[h, -h], [-h, h]] }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::element::testing::check;
@@ -71,6 +90,17 @@ mod tests {
         let slipping = element.exact(&[0.8]);
         assert!((slipping.gradient[0] - 1.0).abs() < 1e-15 && slipping.hessian[0][0] == 0.0);
         assert!(element.convex(&[0.8]).hessian[0][0] > 0.0);
+    }
+
+    #[test]
+    fn parallel_yarns_resist_only_their_difference() {
+        let element = ParallelSpring(AnchoredSpring { stiffness: 10.0, limit: 1.0, anchor: 0.5 });
+        check(&element, &[0.1, 0.65], 0.01);
+        let sticking = element.exact(&[0.1, 0.65]);
+        assert!((sticking.gradient[1] - 0.5).abs() < 1e-12 && (sticking.gradient[0] + 0.5).abs() < 1e-12);
+        let together = element.exact(&[3.1, 3.65]);
+        assert!((together.energy - sticking.energy).abs() < 1e-12, "sliding together is free");
+        assert!((element.exact(&[0.0, 0.9]).gradient[1] - 1.0).abs() < 1e-12, "Coulomb's limit");
     }
 
     #[test]

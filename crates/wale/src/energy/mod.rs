@@ -18,7 +18,7 @@ pub mod wrapping;
 pub use bending::Bending;
 pub use element::Element;
 pub use foundation::Foundation;
-pub use friction::AnchoredSpring;
+pub use friction::{AnchoredSpring, ParallelSpring};
 pub use gravity::Gravity;
 pub use inertia::Inertia;
 pub use load::Load;

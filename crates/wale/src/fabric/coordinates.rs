@@ -68,6 +68,11 @@ impl Coordinates {
     pub fn node_count(&self) -> usize {
         self.node_count
     }
+    /// Number of passes of all yarns.
+    #[must_use]
+    pub fn pass_count(&self) -> usize {
+        self.sliding.len()
+    }
     /// Length of the global vector.
     #[must_use]
     pub fn len(&self) -> usize {

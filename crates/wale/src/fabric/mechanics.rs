@@ -77,14 +77,17 @@ impl Mechanics {
             stencil[8..].copy_from_slice(&there);
             self.bending.push(Bending { stiffness: material.bending_stiffness, rest_angle }, stencil);
         }
+        // Loops that share a strand with others lie as much closer.
+        let share = f64::from(network.segment_share[pass.index()]);
         let distance = match network.segment_kind[pass.index()] {
             SegmentKind::Stitch => {
-                let element = StitchLength { stiffness: card.length_stiffness, rest_length: card.stitch_length };
+                let rest_length = card.stitch_length / share;
+                let element = StitchLength { stiffness: card.length_stiffness, rest_length };
                 self.stitch_length.push(element, [here[3], there[3]]);
                 return;
             }
             SegmentKind::Leg => card.spacing_leg,
-            SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker,
+            SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker / share,
             // Half of what lies there at first, where the layout is tighter than the card.
             SegmentKind::Edge | SegmentKind::Chain => {
                 let at = |p: PassId| network.arc_length[p.index()];
@@ -99,6 +102,8 @@ impl Mechanics {
     fn add_contacts(&mut self, network: &Network, card: &FabricCard, map: &mut dyn CoordinateMap) {
         for contact in &network.stitches {
             let axis = contact.nodes.map(|node| map.position(node, [0; 2]));
+            let [first, second] = contact.passes[0];
+            let share = f64::from(network.segment_share[first.min(second).index()]);
             for pair in &contact.pairs {
                 let side = |map: &mut dyn CoordinateMap, pass: PassId, image| {
                     map.position(network.pass_node[pass.index()], image)
@@ -110,7 +115,7 @@ impl Mechanics {
                     ContactPair::Leg => card.wrapping_angle_leg,
                 };
                 let element = Wrapping {
-                    stiffness: card.wrapping_stiffness * card.stitch_length,
+                    stiffness: card.wrapping_stiffness * card.stitch_length / share,
                     rest_angle,
                     sign: contact.wrap_sign,
                 };

@@ -37,6 +37,7 @@ pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network 
             network.pass_kind.push(PassKind::Edge);
             network.pass_slides.push(node < rows * columns);
             network.segment_kind.push(SegmentKind::Edge);
+            network.segment_share.push(1);
             network.arc_length.push(network.position[node].distance(start));
         }
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap_or(u32::MAX));

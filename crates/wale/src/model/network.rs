@@ -109,6 +109,9 @@ pub struct Network {
     pub pass_slides: Vec<bool>,
     /// Kind of the segment from each pass to the next of its yarn (`Edge`, unused, for a yarn's last pass).
     pub segment_kind: Vec<SegmentKind>,
+    /// How many loops share the strand that the segment after each pass is part of: more than one where several are
+    /// worked into the same loop.
+    pub segment_share: Vec<u8>,
     /// Initial rest arc length of each pass along its yarn, strictly increasing \[m\].
     pub arc_length: Vec<f64>,
     /// First pass of each yarn; one entry more than there are yarns.
@@ -133,6 +136,8 @@ pub struct Network {
     pub loops: Vec<LoopInfo>,
     /// Rows and columns of the chart.
     pub chart_size: [u32; 2],
+    /// Places on the needle after each row of the chart.
+    pub row_places: Vec<u32>,
     /// For a periodic tile: initial periods along course and wale \[m\].
     pub periods: Option<[DVec3; 2]>,
 }

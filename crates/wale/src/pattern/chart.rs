@@ -4,87 +4,7 @@ use std::fmt;
 
 use thiserror::Error;
 
-/// A stitch as seen from the front (right side) of the fabric.
-///
-/// Later work adds decreases, increases and yarn-overs, hence the open end.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash, PartialOrd, Ord)]
-#[non_exhaustive]
-pub enum Stitch {
-    /// The new loop comes through its parent from back to front: legs in front, head behind.
-    Knit,
-    /// The new loop comes through its parent from front to back: head in front, legs behind.
-    Purl,
-}
-
-impl Stitch {
-    /// The same stitch seen from the other side of the fabric.
-    #[must_use]
-    pub fn from_behind(self) -> Self {
-        match self {
-            Self::Knit => Self::Purl,
-            Self::Purl => Self::Knit,
-        }
-    }
-
-    /// The symbol that charts and listings of this program print.
-    #[must_use]
-    pub fn symbol(self) -> char {
-        match self {
-            Self::Knit => 'k',
-            Self::Purl => 'p',
-        }
-    }
-}
-
-/// A side of the fabric.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash, Default)]
-pub enum Side {
-    /// The front: the side that charts show.
-    #[default]
-    RightSide,
-    /// The back.
-    WrongSide,
-}
-
-/// How rows follow each other on the needles. It decides the course of the yarn, never the look of the front.
-#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
-pub enum Working {
-    /// Back and forth: the yarn turns at the selvedges. Right-side rows run right to left as seen from the front,
-    /// wrong-side rows left to right.
-    Flat {
-        /// The side that faces the knitter while the first row above the cast-on is worked.
-        first_row: Side,
-    },
-    /// In the round: a tube; every row runs right to left as seen from its outside, which is the front.
-    Round,
-}
-
-impl Default for Working {
-    fn default() -> Self {
-        Self::Flat { first_row: Side::RightSide }
-    }
-}
-
-impl Working {
-    /// The side that faces the knitter in a row (counted from 0, the first row above the cast-on).
-    #[must_use]
-    pub fn side(self, row: usize) -> Side {
-        match self {
-            Self::Round => Side::RightSide,
-            Self::Flat { first_row } => match (first_row, row.is_multiple_of(2)) {
-                (side, true) => side,
-                (Side::RightSide, false) => Side::WrongSide,
-                (Side::WrongSide, false) => Side::RightSide,
-            },
-        }
-    }
-
-    /// Whether the yarn of a row runs from the left edge to the right edge as seen from the front.
-    #[must_use]
-    pub fn left_to_right(self, row: usize) -> bool {
-        self.side(row) == Side::WrongSide
-    }
-}
+use super::stitch::Stitch;
 
 /// Why rows of stitches are no chart.
 #[derive(Clone, PartialEq, Eq, Debug, Error)]
@@ -92,21 +12,29 @@ pub enum ChartError {
     /// There is no row.
     #[error("the chart has no rows")]
     NoRows,
-    /// A row has no stitch.
+    /// A row has no stitch, works none or leaves none.
     #[error("row {} of the chart is empty", .row + 1)]
     EmptyRow {
         /// Row, counted from 0 at the cast-on.
         row: usize,
     },
-    /// A row is longer or shorter than the first.
-    #[error("row {} has {found} stitches, the rows below it have {expected}", .row + 1)]
-    Ragged {
+    /// A row works more or fewer stitches than the row below leaves.
+    #[error("row {} works {found} stitches, but the row below it leaves {expected}", .row + 1)]
+    Count {
         /// Row, counted from 0 at the cast-on.
         row: usize,
-        /// Its stitches.
+        /// The stitches that it works.
         found: usize,
-        /// The stitches of the first row.
+        /// The stitches that the row below leaves.
         expected: usize,
+    },
+    /// More loops in one stitch than [`Chart::MOST_STACKED`].
+    #[error("row {} draws a loop through {loops} others, the limit is {}", .row + 1, Chart::MOST_STACKED)]
+    Stacked {
+        /// Row, counted from 0 at the cast-on.
+        row: usize,
+        /// The loops.
+        loops: usize,
     },
     /// More loops than [`Chart::MAX_LOOPS`].
     #[error("{columns} columns × {rows} rows are {} loops, the limit is {}", u128::from(*.columns) * u128::from(*.rows), Chart::MAX_LOOPS)]
@@ -116,16 +44,50 @@ pub enum ChartError {
         /// Rows asked for.
         rows: u64,
     },
+    /// A width at which a repeat cannot be cut off.
+    #[error("{columns} columns are no multiple of the {repeat} that a repeat begins with, and its rows cannot be cut")]
+    Cut {
+        /// Columns asked for.
+        columns: usize,
+        /// Columns of the repeat.
+        repeat: usize,
+    },
+    /// The last row leaves another number of stitches than the first works, so that the rows cannot be repeated.
+    #[error("the rows begin with {first} stitches and end with {last}: they cannot follow each other again")]
+    Shaped {
+        /// Stitches that the first row works.
+        first: usize,
+        /// Stitches that the last row leaves.
+        last: usize,
+    },
+    /// A stitch that every row of a repeat passes on.
+    #[error("stitch {} is slipped in every row: no endless fabric can be made of it", .column + 1)]
+    NeverWorked {
+        /// Column, counted from 0 at the left.
+        column: usize,
+    },
+    /// Yarns that do not belong to the stitches.
+    #[error("row {} has {found} stitches with a yarn, the chart has {expected} there", .row + 1)]
+    Yarns {
+        /// Row, counted from 0 at the cast-on.
+        row: usize,
+        /// Yarns of the row.
+        found: usize,
+        /// Its stitches.
+        expected: usize,
+    },
 }
 
-/// A rectangle of stitches as seen from the front of the fabric.
+/// Rows of stitches as seen from the front of the fabric, and the yarn of every stitch.
 ///
-/// Row 0 is the first row worked above the cast-on; column 0 is the leftmost. There is at least one row and one
-/// column, every row has the same number of columns, and there are at most [`Chart::MAX_LOOPS`] loops.
+/// Row 0 is the first row worked above the cast-on; within a row, stitches run from the left. Every row works as many
+/// stitches as the row below it leaves (the first: as are cast on); there are at most [`Chart::MAX_LOOPS`] loops.
+/// Places on the needle are called columns, counted from the left in each row.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct Chart {
-    /// `rows[row][column]`.
-    pub(crate) rows: Vec<Vec<Stitch>>,
+    rows: Vec<Vec<Stitch>>,
+    /// Yarn of each stitch; empty if there is one yarn only.
+    yarns: Vec<Vec<u8>>,
 }
 
 impl Chart {
@@ -133,23 +95,73 @@ impl Chart {
     /// a fabric of this size already needs some 0.4 TB.
     pub const MAX_LOOPS: u64 = 16_000_000;
 
+    /// Most loops that one may be drawn through.
+    pub const MOST_STACKED: usize = 7;
+
     /// Checks rows of stitches, the first row worked first, each from left to right as seen from the front.
     ///
     /// # Errors
-    /// If there are no rows, a row is empty, the rows are of unequal length, or there are too many loops.
+    /// If there are no rows, a row is empty, does not work what the row below leaves, draws a loop through too many, or
+    /// there are too many loops.
     pub fn new(rows: Vec<Vec<Stitch>>) -> Result<Self, ChartError> {
-        let expected = rows.first().ok_or(ChartError::NoRows)?.len();
+        let first = rows.first().ok_or(ChartError::NoRows)?;
+        let mut loops = 0_u64;
+        // Loops at each place of the needle.
+        let mut needle = vec![1_usize; first.iter().map(|stitch| stitch.takes()).sum()];
         for (row, stitches) in rows.iter().enumerate() {
-            let found = stitches.len();
+            let found: usize = stitches.iter().map(|stitch| stitch.takes()).sum();
+            let expected = needle.len();
             if found == 0 {
                 return Err(ChartError::EmptyRow { row });
             }
             if found != expected {
-                return Err(ChartError::Ragged { row, found, expected });
+                return Err(ChartError::Count { row, found, expected });
+            }
+            let mut below = needle.into_iter();
+            let mut above = Vec::with_capacity(found);
+            for stitch in stitches {
+                let taken: usize = below.by_ref().take(stitch.takes()).sum();
+                match stitch {
+                    Stitch::Slip { .. } => above.push(taken),
+                    Stitch::Tuck => above.push(taken + 1),
+                    _ => above.extend(std::iter::repeat_n(1, stitch.leaves())),
+                }
+                let loops = if *stitch == Stitch::Tuck { taken + 1 } else { taken };
+                if loops > Self::MOST_STACKED {
+                    return Err(ChartError::Stacked { row, loops });
+                }
+            }
+            loops += above.len() as u64;
+            Self::check_size(loops, 1)?;
+            needle = above;
+        }
+        Ok(Self { rows, yarns: Vec::new() })
+    }
+
+    /// The chart with a yarn for every stitch, row by row as the stitches; slipped stitches have the yarn that floats
+    /// past them.
+    ///
+    /// # Errors
+    /// If the rows do not have as many yarns as stitches.
+    pub fn with_yarns(mut self, yarns: Vec<Vec<u8>>) -> Result<Self, ChartError> {
+        for row in 0..self.rows.len().max(yarns.len()) {
+            let count = |found: Option<usize>| found.unwrap_or(0);
+            let (found, expected) = (count(yarns.get(row).map(Vec::len)), count(self.rows.get(row).map(Vec::len)));
+            if found != expected {
+                return Err(ChartError::Yarns { row, found, expected });
             }
         }
-        Self::check_size(expected as u64, rows.len() as u64)?;
-        Ok(Self { rows })
+        self.yarns = if yarns.iter().flatten().all(|yarn| *yarn == 0) { Vec::new() } else { yarns };
+        Ok(self)
+    }
+
+    /// The chart striped: each row of one yarn, in turn.
+    #[must_use]
+    pub fn striped(self, stripes: &[u8]) -> Self {
+        let yarns = self.rows.iter().zip(stripes.iter().cycle()).map(|(row, yarn)| vec![*yarn; row.len()]).collect();
+        let same = self.clone();
+        // Without stripes there is nothing to zip; the chart stays as it is.
+        self.with_yarns(yarns).unwrap_or(same)
     }
 
     /// Refuses a size before anything is allocated for it.
@@ -175,119 +187,71 @@ impl Chart {
         &self.rows
     }
 
+    /// The yarn of a stitch.
+    #[must_use]
+    pub fn yarn(&self, row: usize, stitch: usize) -> u8 {
+        self.yarns.get(row).map_or(0, |row| row[stitch])
+    }
+
+    /// Number of yarns.
+    #[must_use]
+    pub fn yarn_count(&self) -> usize {
+        self.yarns.iter().flatten().max().map_or(1, |most| usize::from(*most) + 1)
+    }
+
     /// Number of rows (courses).
     #[must_use]
     pub fn row_count(&self) -> usize {
         self.rows.len()
     }
 
-    /// Number of columns (wales).
+    /// Number of stitches to cast on.
+    #[must_use]
+    pub fn cast_on(&self) -> usize {
+        self.rows[0].iter().map(|stitch| stitch.takes()).sum()
+    }
+
+    /// Number of columns (wales): the most that are on the needle at once.
     #[must_use]
     pub fn column_count(&self) -> usize {
-        self.rows[0].len()
+        let leaves = |row: &Vec<Stitch>| row.iter().map(|stitch| stitch.leaves()).sum::<usize>();
+        self.rows.iter().map(leaves).fold(self.cast_on(), usize::max)
     }
 
-    /// Number of loops.
+    /// Number of loops that the rows make.
     #[must_use]
     pub fn loop_count(&self) -> usize {
-        self.row_count() * self.column_count()
+        self.rows.iter().flatten().map(|stitch| stitch.makes()).sum()
     }
 
-    /// The chart repeated side by side and upwards to a total size, cut off where the size is no multiple.
-    ///
-    /// # Errors
-    /// If a count is zero or the loops are too many.
-    pub fn repeat(&self, columns: usize, rows: usize) -> Result<Self, ChartError> {
-        Self::check_size(columns as u64, rows as u64)?;
-        let row = |r: usize| -> Vec<Stitch> {
-            let source = &self.rows[r % self.row_count()];
-            source.iter().copied().cycle().take(columns).collect()
-        };
-        Ok(Self { rows: (0..rows).map(row).collect() })
-    }
-
-    /// The smallest rectangle that, repeated, gives this chart again.
-    ///
-    /// A repeat that does not divide the chart counts when the chart shows at least two whole ones of it.
-    #[must_use]
-    pub fn smallest_repeat(&self) -> Self {
-        let columns = smallest_period(self.column_count(), |a, b| self.rows.iter().all(|row| row[a] == row[b]));
-        let rows = smallest_period(self.row_count(), |a, b| self.rows[a] == self.rows[b]);
-        Self { rows: self.rows[..rows].iter().map(|row| row[..columns].to_vec()).collect() }
-    }
-
-    /// Knit–purl changes from one stitch to the next within a row, per stitch, of the chart repeated side by side.
+    /// Knit–purl changes from one stitch to the next within a row, per loop, of the chart repeated side by side.
     #[must_use]
     pub fn transitions_per_stitch(&self) -> f64 {
-        let columns = self.column_count();
-        let changes: usize =
-            self.rows.iter().map(|row| (0..columns).filter(|&c| row[c] != row[(c + 1) % columns]).count()).sum();
-        changes as f64 / self.loop_count() as f64
+        let changes = |row: &Vec<Stitch>| {
+            let next = row.iter().cycle().skip(1);
+            row.iter().zip(next).filter(|(stitch, next)| stitch.turns_to(**next)).count()
+        };
+        self.rows.iter().map(changes).sum::<usize>() as f64 / self.loop_count().max(1) as f64
     }
 
-    /// All knit.
-    #[must_use]
-    pub fn stockinette() -> Self {
-        Self::from_fn(1, 1, |_, _| Stitch::Knit)
+    /// Rows and yarns of a chart that is known to be sound.
+    pub(super) fn of_sound(rows: Vec<Vec<Stitch>>) -> Self {
+        Self { rows, yarns: Vec::new() }
     }
 
-    /// All purl: stockinette seen from behind.
-    #[must_use]
-    pub fn reverse_stockinette() -> Self {
-        Self::from_fn(1, 1, |_, _| Stitch::Purl)
+    /// The rows with the yarns of their stitches.
+    pub(super) fn cells(&self) -> Vec<Vec<(Stitch, u8)>> {
+        let row = |(row, stitches): (usize, &Vec<Stitch>)| {
+            stitches.iter().enumerate().map(|(at, stitch)| (*stitch, self.yarn(row, at))).collect()
+        };
+        self.rows.iter().enumerate().map(row).collect()
     }
 
-    /// Rows knit and purl in turn.
-    #[must_use]
-    pub fn garter() -> Self {
-        Self::from_fn(1, 2, |_, row| knit_if(row == 0))
-    }
-
-    /// Columns: `knit` knit ones, then `purl` purl ones.
-    ///
-    /// # Errors
-    /// If there are no columns or too many.
-    pub fn rib(knit: usize, purl: usize) -> Result<Self, ChartError> {
-        let columns = knit.saturating_add(purl);
-        Self::check_size(columns as u64, 1)?;
-        Ok(Self::from_fn(columns, 1, |column, _| knit_if(column < knit)))
-    }
-
-    /// Knit and purl alternate along both directions.
-    #[must_use]
-    pub fn seed() -> Self {
-        Self::from_fn(2, 2, |column, row| knit_if(column == row))
-    }
-
-    /// Knit and purl alternate along the row, and change places every two rows.
-    #[must_use]
-    pub fn moss() -> Self {
-        Self::from_fn(2, 4, |column, row| knit_if(column == row / 2))
-    }
-
-    /// Blocks of `columns` × `rows` knits and purls, as on a chessboard.
-    ///
-    /// # Errors
-    /// If a count is zero or the repeat is too large.
-    pub fn basket(columns: usize, rows: usize) -> Result<Self, ChartError> {
-        Self::check_size(columns as u64, rows as u64)?;
-        Self::check_size(2 * columns as u64, 2 * rows as u64)?;
-        Ok(Self::from_fn(2 * columns, 2 * rows, |column, row| knit_if((column < columns) == (row < rows))))
-    }
-
-    /// Rows: `knit` knit ones, then `purl` purl ones, as seen from the front.
-    ///
-    /// # Errors
-    /// If there are no rows or too many.
-    pub fn welting(knit: usize, purl: usize) -> Result<Self, ChartError> {
-        let rows = knit.saturating_add(purl);
-        Self::check_size(1, rows as u64)?;
-        Ok(Self::from_fn(1, rows, |_, row| knit_if(row < knit)))
-    }
-
-    /// A small chart, sizes checked by the caller.
-    fn from_fn(columns: usize, rows: usize, stitch: impl Fn(usize, usize) -> Stitch) -> Self {
-        Self { rows: (0..rows).map(|row| (0..columns).map(|column| stitch(column, row)).collect()).collect() }
+    /// A chart of stitches with their yarns.
+    pub(super) fn from_cells(cells: Vec<Vec<(Stitch, u8)>>) -> Result<Self, ChartError> {
+        let rows = cells.iter().map(|row| row.iter().map(|(stitch, _)| *stitch).collect()).collect();
+        let yarns = cells.iter().map(|row| row.iter().map(|(_, yarn)| *yarn).collect()).collect();
+        Self::new(rows)?.with_yarns(yarns)
     }
 }
 
@@ -304,102 +268,47 @@ impl fmt::Debug for Chart {
     }
 }
 
-fn knit_if(knit: bool) -> Stitch {
-    if knit { Stitch::Knit } else { Stitch::Purl }
-}
-
-/// Smallest period of a sequence of length `n ≥ 1` that divides it or fits in it twice.
-///
-/// The failure function of Knuth, Morris and Pratt: every period of the sequence is `n` less the length of a border
-/// (a proper prefix that is also a suffix), and all borders lie on the chain of failures. Linear in comparisons.
-fn smallest_period(n: usize, equal: impl Fn(usize, usize) -> bool) -> usize {
-    let mut border = vec![0_usize; n];
-    for i in 1..n {
-        let mut length = border[i - 1];
-        while length > 0 && !equal(i, length) {
-            length = border[length - 1];
-        }
-        border[i] = length + usize::from(equal(i, length));
-    }
-    let mut length = border[n - 1];
-    loop {
-        let period = n - length;
-        if n.is_multiple_of(period) || 2 * period <= n {
-            return period;
-        }
-        length = border[length - 1];
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pattern::symbols::{default_legend, read_symbols};
 
-    fn drawn(chart: &Chart) -> Vec<String> {
-        let line = |row: &Vec<Stitch>| row.iter().map(|s| s.symbol()).collect();
-        chart.rows().iter().map(line).collect()
+    fn chart(lines: &[&str]) -> Chart {
+        read_symbols(lines, &default_legend()).unwrap()
     }
 
     #[test]
-    fn named_patterns_look_as_knitters_know_them() {
-        assert_eq!(drawn(&Chart::garter()), ["k", "p"]);
-        assert_eq!(drawn(&Chart::rib(2, 1).unwrap()), ["kkp"]);
-        assert_eq!(drawn(&Chart::seed()), ["kp", "pk"]);
-        assert_eq!(drawn(&Chart::moss()), ["kp", "kp", "pk", "pk"]);
-        assert_eq!(drawn(&Chart::basket(2, 1).unwrap()), ["kkpp", "ppkk"], "blocks change places");
-        assert_eq!(drawn(&Chart::welting(2, 1).unwrap()), ["k", "k", "p"]);
-    }
-
-    #[test]
-    fn repeating_and_finding_the_repeat_are_inverse() {
-        let patterns = [
-            Chart::stockinette(),
-            Chart::garter(),
-            Chart::rib(3, 2).unwrap(),
-            Chart::seed(),
-            Chart::moss(),
-            Chart::basket(3, 4).unwrap(),
-            Chart::welting(2, 2).unwrap(),
-        ];
-        for pattern in patterns {
-            let (columns, rows) = (pattern.column_count(), pattern.row_count());
-            for (c, r) in [(2 * columns, 3 * rows), (2 * columns + 1, 2 * rows + 1)] {
-                let fabric = pattern.repeat(c, r).unwrap();
-                assert_eq!((fabric.column_count(), fabric.row_count()), (c, r));
-                assert_eq!(fabric.smallest_repeat(), pattern);
-            }
-        }
-    }
-
-    #[test]
-    fn a_border_seen_once_is_no_repeat() {
-        let row: Vec<Stitch> = "kkpkk".chars().map(|c| knit_if(c == 'k')).collect();
-        let chart = Chart::new(vec![row]).unwrap();
-        assert_eq!(chart.smallest_repeat().column_count(), 5);
-    }
-
-    #[test]
-    fn bad_sizes_are_refused() {
+    fn bad_rows_are_refused() {
         assert_eq!(Chart::new(vec![]), Err(ChartError::NoRows));
         let ragged = vec![vec![Stitch::Knit; 3], vec![Stitch::Knit; 2]];
         let error = Chart::new(ragged).unwrap_err();
-        assert_eq!(error.to_string(), "row 2 has 2 stitches, the rows below it have 3");
+        assert_eq!(error.to_string(), "row 2 works 2 stitches, but the row below it leaves 3");
         assert_eq!(Chart::new(vec![vec![]]), Err(ChartError::EmptyRow { row: 0 }));
-        assert!(Chart::rib(0, 0).is_err());
-        assert!(Chart::rib(usize::MAX, 1).is_err());
-        assert!(Chart::basket(usize::MAX, usize::MAX).is_err());
-        let huge = Chart::stockinette().repeat(1_000_000, 1_000_000);
-        let text = huge.unwrap_err().to_string();
-        assert!(text.contains("1000000000000 loops") && text.contains("16000000"));
+        assert_eq!(Chart::new(vec![vec![Stitch::YarnOver]]), Err(ChartError::EmptyRow { row: 0 }));
+        let tucks = vec![vec![Stitch::Tuck]; 7];
+        assert_eq!(Chart::new(tucks).unwrap_err(), ChartError::Stacked { row: 6, loops: 8 });
     }
 
     #[test]
-    fn sides_alternate_flat_and_not_in_the_round() {
-        let flat = Working::default();
-        assert!(!flat.left_to_right(0) && flat.left_to_right(1));
-        let from_behind = Working::Flat { first_row: Side::WrongSide };
-        assert!(from_behind.left_to_right(0) && !from_behind.left_to_right(1));
-        assert!(!Working::Round.left_to_right(1));
+    fn shaping_changes_the_counts_from_row_to_row() {
+        let chart = chart(&["^", "/k\\", "kkkkk", "kmkm k"]);
+        assert_eq!((chart.cast_on(), chart.column_count(), chart.loop_count()), (3, 5, 14));
+    }
+
+    #[test]
+    fn slipped_stitches_make_no_loop() {
+        let chart = chart(&["kkkk", "kVkW", "kTkk"]);
+        assert_eq!((chart.cast_on(), chart.column_count(), chart.loop_count()), (4, 4, 10));
+    }
+
+    #[test]
+    fn yarns_belong_to_stitches() {
+        let striped = chart(&["kk", "kk", "kk"]).striped(&[0, 1]);
+        assert_eq!((striped.yarn(0, 1), striped.yarn(1, 0), striped.yarn(2, 0), striped.yarn_count()), (0, 1, 0, 2));
+        let plain = chart(&["kk"]);
+        assert_eq!(plain.clone().striped(&[0]), plain);
+        let error = plain.with_yarns(vec![vec![0]]).unwrap_err();
+        assert_eq!(error.to_string(), "row 1 has 1 stitches with a yarn, the chart has 2 there");
     }
 
     #[test]

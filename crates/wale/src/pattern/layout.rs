@@ -58,45 +58,49 @@ impl Layout {
         Place { position, front, chart: [column, row] }
     }
 
-    /// One of the four own nodes of a loop.
-    pub fn corner(&self, row: usize, column: usize, corner: usize) -> Place {
+    /// One of the four own nodes of a loop whose middle is there.
+    pub fn corner(&self, [column, row]: [f64; 2], corner: usize) -> Place {
         let left = corner == LEFT_FOOT || corner == LEFT_LEG;
         let leg = corner == LEFT_LEG || corner == RIGHT_LEG;
         let x = if leg { LEG } else { FOOT } * if left { -1.0 } else { 1.0 };
         let y = if leg { CONTACT } else { -CONTACT };
-        self.place(column as f64 + 0.5 + x, row as f64 + y)
+        self.place(column + x, row + y)
     }
 
     /// The tie of a cast-on loop.
-    pub fn cast_on(&self, column: usize) -> Place {
-        self.place(column as f64 + 0.5, -0.75)
+    pub fn cast_on(&self, [column, row]: [f64; 2]) -> Place {
+        self.place(column, row + 0.25)
     }
 
     /// One of the two nodes of a bound-off loop.
-    pub fn top(&self, rows: usize, column: usize, side: usize) -> Place {
+    pub fn top(&self, [column, row]: [f64; 2], side: usize) -> Place {
         let x = if side == 0 { -LEG } else { LEG };
-        self.place(column as f64 + 0.5 + x, rows as f64)
+        self.place(column + x, row)
+    }
+
+    /// The tail of a yarn that begins or ends there, behind the fabric.
+    pub fn behind(&self, [column, row]: [f64; 2]) -> Place {
+        let mut place = self.place(column, row - CONTACT);
+        place.position -= place.front * self.wale_spacing;
+        place
     }
 
     /// A turn or a tail beside the edge, `offset` rows above a row.
-    pub fn beside(&self, row: usize, offset: f64, right: bool) -> Place {
+    pub fn beside(&self, row: i32, offset: f64, right: bool) -> Place {
         let column = if right { self.columns as f64 + BESIDE } else { -BESIDE };
         if self.is_round() {
             // Beside the seam of a tube is on the next loop: step out of the surface instead.
-            let mut place = self.place(if right { self.columns as f64 } else { 0.0 }, row as f64 + offset);
+            let mut place = self.place(if right { self.columns as f64 } else { 0.0 }, f64::from(row) + offset);
             place.position += place.front * (BESIDE * self.wale_spacing) + DVec3::Y * (0.3 * self.course_spacing);
             return place;
         }
-        self.place(column, row as f64 + offset)
+        self.place(column, f64::from(row) + offset)
     }
 
-    /// Rest length over layout length of the yarn between stitch contacts, so that a loop holds its loop length.
-    pub fn slack(&self, loop_length: f64, stitch_length: f64) -> f64 {
+    /// Lengths that a leg, a head and a sinker of a plain stitch have in the layout \[m\].
+    pub fn between_contacts(&self) -> [f64; 3] {
         let leg_x = (FOOT - LEG) * self.wale_spacing;
         let leg_y = (1.0 - 2.0 * CONTACT) * self.course_spacing;
-        let leg = leg_x.hypot(leg_y);
-        let head = 2.0 * LEG * self.wale_spacing;
-        let sinker = (1.0 - 2.0 * FOOT) * self.wale_spacing;
-        (loop_length - 4.0 * stitch_length) / (2.0 * leg + head + sinker)
+        [leg_x.hypot(leg_y), 2.0 * LEG * self.wale_spacing, (1.0 - 2.0 * FOOT) * self.wale_spacing]
     }
 }

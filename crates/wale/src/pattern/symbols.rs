@@ -5,17 +5,22 @@ use std::ops::Range;
 
 use thiserror::Error;
 
-use super::chart::{Chart, ChartError, Stitch};
+use super::chart::{Chart, ChartError};
+use super::stitch::Stitch;
 
 /// What the symbols of a chart mean; each stands for the stitch as seen from the front, in every row.
 pub type Legend = BTreeMap<char, Stitch>;
 
-/// The usual signs: `k K | □` knit, `p P - • .` purl.
+/// The usual signs: `k K | □` knit, `p P - • .` purl, `o O ○` yarn-over, `/` k2tog, `\` ssk, `r` p2tog, `l` ssp, `>` k3tog,
+/// `<` sssk, `^` centred double decrease, `R` p3tog, `L` sssp, `v` the centred one purled, `f` kfb, `F` pfb, `Y` k-yo-k, `Z`
+/// k-p-k, `z` p-k-p, `m` m1, `M` m1p, `V` slip with the yarn behind, `W` slip with the yarn in front, `T` tuck; `#` and `■` are
+/// places without a stitch.
 #[must_use]
 pub fn default_legend() -> Legend {
-    let knit = ['k', 'K', '|', '□'].map(|symbol| (symbol, Stitch::Knit));
-    let purl = ['p', 'P', '-', '•', '.'].map(|symbol| (symbol, Stitch::Purl));
-    knit.into_iter().chain(purl).collect()
+    let more =
+        [(Stitch::Knit, &['K', '|', '□'][..]), (Stitch::Purl, &['P', '-', '•', '.']), (Stitch::YarnOver, &['O', '○'])];
+    let more = more.into_iter().flat_map(|(stitch, symbols)| symbols.iter().map(move |symbol| (*symbol, stitch)));
+    Stitch::all().map(|(_, symbol, stitch)| (symbol, stitch)).chain(more).collect()
 }
 
 /// Why lines of symbols are no chart.
@@ -42,16 +47,6 @@ pub enum SymbolErrorReason {
         /// Row from 1 at the bottom.
         row: usize,
     },
-    /// A line is longer or shorter than the bottom line.
-    #[error("row {row} of the chart has {found} stitches, row 1 (the lowest) has {expected}")]
-    Ragged {
-        /// Row from 1 at the bottom.
-        row: usize,
-        /// Its stitches.
-        found: usize,
-        /// The stitches of the lowest row.
-        expected: usize,
-    },
     /// A symbol that the legend does not have.
     #[error("`{}` in row {row} is not in the legend ({known})", .symbol.escape_debug())]
     UnknownSymbol {
@@ -62,25 +57,22 @@ pub enum SymbolErrorReason {
         /// The symbols of the legend.
         known: String,
     },
-    /// Too many loops.
+    /// Too many loops, or rows whose counts do not fit together.
     #[error(transparent)]
-    Size(ChartError),
+    Chart(ChartError),
 }
 
 /// Reads lines of symbols, the topmost first; spaces between symbols are left out.
 ///
 /// # Errors
-/// If there is no line, a line is empty or its length differs from the lowest line's, or a symbol is unknown. The
-/// error names the row, counted from 1 at the bottom as knitters do, and both counts.
+/// If there is no line, a line is empty or works another number of stitches than the line below it leaves, or a symbol
+/// is unknown. The error names the row, counted from 1 at the bottom as knitters do, and both counts.
 pub fn read_symbols<S: AsRef<str>>(lines: &[S], legend: &Legend) -> Result<Chart, SymbolError> {
     let error = |line, bytes, reason| SymbolError { line, bytes, reason };
     let row_of = |line: usize| lines.len() - line;
-    let Some(lowest) = lines.last() else {
+    if lines.is_empty() {
         return Err(error(0, None, SymbolErrorReason::NoRows));
-    };
-    let expected = stitches_in(lowest.as_ref());
-    Chart::check_size(expected.max(1) as u64, lines.len() as u64)
-        .map_err(|size| error(0, None, SymbolErrorReason::Size(size)))?;
+    }
     let mut rows = Vec::with_capacity(lines.len());
     for (line, text) in lines.iter().map(AsRef::as_ref).enumerate().rev() {
         let row = row_of(line);
@@ -89,7 +81,7 @@ pub fn read_symbols<S: AsRef<str>>(lines: &[S], legend: &Legend) -> Result<Chart
             return Err(error(line, None, SymbolErrorReason::EmptyRow { row }));
         }
         let mut stitches = Vec::with_capacity(found);
-        for (at, symbol) in text.char_indices().filter(|(_, c)| !c.is_whitespace()) {
+        for (at, symbol) in text.char_indices().filter(|(_, c)| !is_blank(*c)) {
             let stitch = legend.get(&symbol).ok_or_else(|| {
                 let reason = SymbolErrorReason::UnknownSymbol {
                     row,
@@ -100,13 +92,14 @@ pub fn read_symbols<S: AsRef<str>>(lines: &[S], legend: &Legend) -> Result<Chart
             })?;
             stitches.push(*stitch);
         }
-        if found != expected {
-            let reason = SymbolErrorReason::Ragged { row, found, expected };
-            return Err(error(line, None, reason));
-        }
         rows.push(stitches);
     }
-    Chart::new(rows).map_err(|size| error(0, None, SymbolErrorReason::Size(size)))
+    Chart::new(rows).map_err(|refused| match refused {
+        ChartError::Count { row, .. } | ChartError::Stacked { row, .. } | ChartError::EmptyRow { row } => {
+            error(lines.len() - 1 - row, None, SymbolErrorReason::Chart(refused))
+        }
+        _ => error(0, None, SymbolErrorReason::Chart(refused)),
+    })
 }
 
 /// The lines that [`read_symbols`] reads back with the default legend, the topmost row first.
@@ -116,8 +109,13 @@ pub fn write_symbols(chart: &Chart) -> Vec<String> {
     chart.rows().iter().rev().map(line).collect()
 }
 
+/// Whether a symbol stands for no stitch.
+fn is_blank(symbol: char) -> bool {
+    symbol.is_whitespace() || matches!(symbol, '#' | '■')
+}
+
 fn stitches_in(line: &str) -> usize {
-    line.chars().filter(|c| !c.is_whitespace()).count()
+    line.chars().filter(|c| !is_blank(*c)).count()
 }
 
 #[cfg(test)]
@@ -137,7 +135,7 @@ mod tests {
         let read = |lines: &[&str]| read_symbols(lines, &default_legend()).unwrap_err();
         let ragged = read(&["kkk", "kk", "kk"]);
         assert_eq!((ragged.line, ragged.bytes.clone()), (0, None));
-        assert_eq!(ragged.to_string(), "row 3 of the chart has 3 stitches, row 1 (the lowest) has 2");
+        assert_eq!(ragged.to_string(), "row 3 works 3 stitches, but the row below it leaves 2");
         let empty = read(&["kk", "  ", "kk"]);
         assert_eq!(empty.to_string(), "row 2 of the chart is empty");
         assert_eq!(read(&[]).to_string(), "the chart has no rows");

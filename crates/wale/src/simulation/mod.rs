@@ -100,8 +100,8 @@ impl Simulation {
             step: 0,
             next_step_size: plan.simulation.largest_step,
             velocities: vec![0.0; coordinates.len()],
+            anchors: system.anchors_at(&coordinates),
             coordinates,
-            anchors: network.arc_length.clone(),
             obstacle_anchors: Vec::new(),
             grip_memory: vec![0.0; grips.memory_len()],
         };

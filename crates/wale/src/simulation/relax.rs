@@ -46,9 +46,7 @@ impl Simulation {
         self.system.set_stiffness_damping(keep.2);
         self.system.set_gravity(self.plan.simulation.gravity);
         self.state.velocities.fill(0.0);
-        for (pass, anchor) in self.state.anchors.iter_mut().enumerate() {
-            *anchor = self.state.coordinates[self.system.coordinates.slot(crate::model::PassId::new(pass))];
-        }
+        self.state.anchors = self.system.anchors_at(&self.state.coordinates);
         report
     }
 

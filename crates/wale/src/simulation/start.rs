@@ -6,9 +6,11 @@ use crate::model::{FabricCard, Network, YarnCard};
 use crate::pattern::{Chart, Working, knit};
 
 /// Most loops of a repeat that is relaxed for its loop shapes.
-pub const MOST_TILE_LOOPS: usize = 64;
+pub const MOST_TILE_LOOPS: usize = 100;
 /// Starts from which a repeat is relaxed; the one of lowest energy is taken, because equilibria are not unique.
 const STARTS: u64 = 3;
+/// Loops of a repeat above which one start must do: its system is solved densely, at the cube of its size.
+const MANY_LOOPS: usize = 40;
 
 /// A fabric before anything happens to it.
 #[derive(Clone, Debug)]
@@ -32,15 +34,16 @@ pub struct StartReport {
 
 impl Start {
     /// Lays out a chart; `compensate` gives every loop the shape that it has in the relaxed repeat
-    /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large keeps the plain layout.
+    /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large, or that does not repeat,
+    /// keeps the plain layout.
     #[must_use]
     pub fn new(chart: &Chart, working: Working, yarn: &YarnCard, card: &FabricCard, compensate: bool) -> Self {
         let mut network = knit::fabric(chart, working, card);
         let repeat = chart.smallest_repeat();
-        if !compensate || repeat.loop_count() > MOST_TILE_LOOPS {
+        let small = compensate && repeat.loop_count() <= MOST_TILE_LOOPS;
+        let Some(tile) = small.then(|| knit::tile(&repeat, card).ok()).flatten() else {
             return Self { network, compensation: None };
-        }
-        let tile = knit::tile(&repeat, card);
+        };
         let relaxed = relax_repeat(&tile, yarn, card);
         lay_loop_shapes(&mut network, &tile, &relaxed, working == Working::Round);
         let report = StartReport {
@@ -56,7 +59,8 @@ impl Start {
 fn relax_repeat(tile: &Network, yarn: &YarnCard, card: &FabricCard) -> TileEquilibrium {
     let run = |seed| relax_tile(tile, yarn, card, &TileSettings { seed, ..TileSettings::default() });
     let mut best = run(1);
-    for seed in 2..=STARTS {
+    let starts = if tile.loops.len() > MANY_LOOPS { 1 } else { STARTS };
+    for seed in 2..=starts {
         let other = run(seed);
         if (other.converged, -other.energy) > (best.converged, -best.energy) {
             best = other;

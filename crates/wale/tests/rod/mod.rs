@@ -82,6 +82,7 @@ pub fn network(places: Vec<DVec3>, yarns: &[Yarn]) -> Network {
             network.pass_kind.push(PassKind::Edge);
             network.pass_slides.push(yarn.slides[k]);
             network.segment_kind.push(SegmentKind::Edge);
+            network.segment_share.push(1);
             network.arc_length.push(yarn.arc_length[k]);
         }
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap());

@@ -1,18 +1,23 @@
 //! The lines of a text of instructions, and the rows they amount to.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::ops::Range;
 
 use super::lexer::Line;
-use super::row::{self, Part};
+use super::row::{self, Row};
+use super::yarns::Yarns;
 use super::{InstructionError, InstructionErrorReason as Reason, Written};
-use crate::pattern::chart::{Chart, Side, Stitch, Working};
+use crate::pattern::chart::Chart;
+use crate::pattern::stitch::Stitch;
+use crate::pattern::working::{Side, Working};
 
 type Parsed<T> = Result<T, InstructionError>;
 
 /// What some rows are said to be.
 enum Body {
-    /// Parts of a row.
-    Parts(Vec<Part>),
+    /// What is worked in the row.
+    Parts(Row),
     /// The same as these earlier rows, in turn.
     Again { first: u64, last: u64 },
 }
@@ -35,6 +40,7 @@ struct Reader {
     rows: Vec<Rows>,
     /// The first line that says its side: the row's number, and the side.
     side: Option<(u64, Side)>,
+    yarns: Yarns,
 }
 
 pub(super) fn read(text: &str, columns: Option<usize>) -> Parsed<Written> {
@@ -56,10 +62,16 @@ impl Reader {
         match (line.word(), line.word_after(1)) {
             (Some("cast"), Some("on")) => self.cast_on(line),
             (Some("bind" | "cast"), Some("off")) => Ok(()),
-            (Some("join"), _) => self.work_in(line, true),
+            (Some("join"), Some("in" | "to") | None) => self.work_in(line, true),
             (Some("row" | "rows"), _) => self.row(line, false),
             (Some("rnd" | "rnds" | "round" | "rounds"), _) => self.row(line, true),
             (Some("rep" | "repeat"), _) => self.append(line),
+            (Some("yarns" | "colors" | "colours"), _) => self.yarns.declare(line),
+            (Some("with" | "change" | "join"), _) => {
+                self.yarns.switch(line)?;
+                line.skip_separators();
+                if line.is_empty() { Ok(()) } else { Err(line.expected("the end of the line")) }
+            }
             _ => {
                 let found = line.source(&line.place());
                 Err(line.error(Reason::UnknownLine { found }))
@@ -131,7 +143,7 @@ impl Reader {
             }
             Body::Again { first, last }
         } else {
-            Body::Parts(row::parse(line)?)
+            Body::Parts(row::parse(line, &mut self.yarns)?)
         };
         self.bodies.push(parsed);
         Ok(())
@@ -231,25 +243,22 @@ impl Reader {
             None => Side::RightSide,
         };
         let working = if self.round == Some(true) { Working::Round } else { Working::Flat { first_row } };
-        let chart = Chart::new(self.work(total, count, working)?).map_err(|size| nowhere(Reason::Size(size)))?;
-        Ok(Written { chart, working, cast_on: self.cast_on })
+        let cells = self.work(total, count, working)?;
+        let chart = Chart::from_cells(cells).map_err(|size| nowhere(Reason::Size(size)))?;
+        Ok(Written { chart, working, cast_on: self.cast_on, yarns: self.yarns.names })
     }
 
-    /// All rows as seen from the front. Each body of parts is worked once, then copied.
-    fn work(&self, total: u64, count: u64, working: Working) -> Parsed<Vec<Vec<Stitch>>> {
-        let mut worked: Vec<Option<Vec<Stitch>>> = vec![None; self.bodies.len()];
+    /// All rows as seen from the front. A body of parts is worked once for every number of stitches it is worked on.
+    fn work(&self, cast_on: u64, count: u64, working: Working) -> Parsed<Vec<Vec<(Stitch, u8)>>> {
+        let mut worked: HashMap<(usize, u64), Vec<(Stitch, u8)>> = HashMap::new();
         // The body of parts behind each row, repeats followed.
         let mut source: Vec<usize> = Vec::new();
-        let mut front: Vec<Vec<Stitch>> = Vec::new();
+        let mut front = Vec::new();
+        let (mut total, mut loops) = (cast_on, 0_u64);
         for rows in &self.rows {
             let error = |reason| InstructionError::new(rows.place.clone(), Some(rows.first), reason);
             let repeat = match &self.bodies[rows.body] {
-                Body::Parts(parts) => {
-                    if worked[rows.body].is_none() {
-                        worked[rows.body] = Some(row::work(parts, total, rows.first)?);
-                    }
-                    None
-                }
+                Body::Parts(_) => None,
                 Body::Again { first, last } if *last >= rows.first => {
                     let (first, last) = (*first, *last);
                     return Err(error(Reason::RepeatsLater { first, last }));
@@ -268,7 +277,15 @@ impl Reader {
                     Some((first, repeat)) => source[(first - 1 + (row - rows.first) % repeat) as usize],
                 };
                 source.push(body);
-                let stitches = worked[body].as_deref().unwrap_or_default();
+                let stitches = match (worked.entry((body, total)), &self.bodies[body]) {
+                    (Entry::Occupied(known), _) => known.into_mut(),
+                    (Entry::Vacant(new), Body::Parts(parts)) => new.insert(row::work(parts, total, row)?),
+                    // Repeats are followed to parts.
+                    (Entry::Vacant(new), Body::Again { .. }) => new.insert(Vec::new()),
+                };
+                total = stitches.iter().map(|(stitch, _)| stitch.leaves() as u64).sum();
+                loops += total;
+                Chart::check_size(loops, 1).map_err(|size| error(Reason::Size(size)))?;
                 front.push(seen_from_front(stitches, working.side(row as usize - 1)));
             }
         }
@@ -277,10 +294,10 @@ impl Reader {
 }
 
 /// Left to right as seen from the front, from stitches in the order and as seen by the knitter.
-fn seen_from_front(worked: &[Stitch], side: Side) -> Vec<Stitch> {
+fn seen_from_front(worked: &[(Stitch, u8)], side: Side) -> Vec<(Stitch, u8)> {
     match side {
         Side::RightSide => worked.iter().rev().copied().collect(),
-        Side::WrongSide => worked.iter().map(|stitch| stitch.from_behind()).collect(),
+        Side::WrongSide => worked.iter().map(|(stitch, yarn)| (stitch.from_behind(), *yarn)).collect(),
     }
 }
 

@@ -8,13 +8,17 @@
 //! Row 3: (k1, p1) 3 times, [k2, [p1, k1] twice] 2 times, p to end
 //! Rows 4-6: knit
 //! Rows 7-12: rep rows 1-6
-//! Rep rows 1-12 3 more times                  appends 36 rows
+//! Row 13: *k2tog 3 times, [yo, k1] 6 times, k2tog 3 times*
+//! Row 14: (k1, yo, k1) in next st, sl1 wyif, p to end
+//! Row 15: with B, k                           another yarn, from here on
+//! Rep rows 1-13 3 more times                  appends 39 rows
 //! Bind off
 //! ```
 //!
 //! `Rnd` in place of `Row` works in the round. Rows are numbered from 1 without gaps, in any order. Right-side rows
 //! run right to left, wrong-side rows left to right as seen from the wrong side, so there a knit is a purl from the
-//! front. A row that is said to repeat another is *worked* like it, from whichever side it then is.
+//! front. A row works as many stitches as the row before it leaves. A row that is said to repeat another is *worked* like
+//! it, from whichever side it then is.
 
 mod file;
 mod lexer;
@@ -22,12 +26,16 @@ mod row;
 #[cfg(test)]
 mod tests;
 mod write;
+mod yarns;
 
 use std::ops::Range;
 
 use thiserror::Error;
 
-use super::chart::{Chart, ChartError, Working};
+use super::chart::{Chart, ChartError};
+use super::increase::Parts;
+use super::stitch::Stitch;
+use super::working::Working;
 
 pub use write::write_instructions;
 
@@ -40,10 +48,15 @@ pub struct Written {
     pub working: Working,
     /// The stitches cast on, if the text says it.
     pub cast_on: Option<u64>,
+    /// Names of the yarns in the order in which they come, the chart's first yarn first; empty if none is named.
+    pub yarns: Vec<String>,
 }
 
 /// Most bytes of a text of instructions.
 pub const LARGEST_TEXT: usize = 1 << 20;
+
+/// Most yarns of a text.
+pub const MOST_YARNS: usize = 16;
 
 /// Deepest nesting of brackets and stars in a row.
 pub const DEEPEST_NESTING: usize = 32;
@@ -111,7 +124,7 @@ pub enum InstructionErrorReason {
         found: String,
     },
     /// A word that is no stitch.
-    #[error("`{word}` is no stitch that wale knows; it knows `k` and `p`")]
+    #[error("`{word}` is no stitch that wale knows; it knows {}", Stitch::names())]
     UnknownStitch {
         /// The word.
         word: String,
@@ -128,6 +141,21 @@ pub enum InstructionErrorReason {
     /// Brackets or stars nested deeper than [`DEEPEST_NESTING`].
     #[error("brackets are nested deeper than {DEEPEST_NESTING}")]
     TooDeep,
+    /// A part that is to fill the row but takes none of its stitches.
+    #[error("`{part}` takes no stitch of the row below, so it cannot fill the row")]
+    TakesNothing {
+        /// The part.
+        part: String,
+    },
+    /// What is worked into one stitch cannot be.
+    #[error("`{part}` cannot be worked into one stitch: 2 to {most} knits, purls and single yarn-overs between them can", most = Parts::MOST)]
+    Increase {
+        /// The part.
+        part: String,
+    },
+    /// More yarns than can be told apart.
+    #[error("there are more than {MOST_YARNS} yarns")]
+    Yarns,
     /// A part that fills the row, inside another repeat or before another such part.
     #[error("`{part}` stretches to fill the row, which only one part of a row can do here")]
     SecondFill {

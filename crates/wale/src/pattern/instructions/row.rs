@@ -3,14 +3,24 @@
 use std::ops::Range;
 
 use super::lexer::Line;
+use super::yarns::Yarns;
 use super::{DEEPEST_NESTING, InstructionError, InstructionErrorReason as Reason};
-use crate::pattern::chart::Stitch;
+use crate::pattern::chart::Chart;
+use crate::pattern::increase::{Part as Into, Parts};
+use crate::pattern::stitch::Stitch;
 
 type Parsed<T> = Result<T, InstructionError>;
 
+/// What a row says: its parts, and the yarn that it begins with.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    parts: Vec<Part>,
+    yarn: u8,
+}
+
 /// A part of a row as it is worked, and its place in the text.
 #[derive(Clone, Debug)]
-pub(super) struct Part {
+struct Part {
     kind: PartKind,
     place: Range<usize>,
     source: String,
@@ -20,31 +30,35 @@ pub(super) struct Part {
 enum PartKind {
     /// `k3`.
     Stitches(Stitch, u64),
-    /// `[…] 3 times`: the parts, their stitches, and how often.
+    /// `with B`: from here on with this yarn.
+    With(u8),
+    /// `[…] 3 times`: the parts, the stitches that they take, and how often.
     Repeat(Vec<Part>, u64, u64),
-    /// `*…*` and the like: the parts, their stitches, and how many stitches of the row to leave over (what follows
-    /// if `None`).
+    /// `*…*` and the like: the parts, the stitches that they take, and how many stitches of the row to leave over (what
+    /// follows if `None`).
     Fill(Vec<Part>, u64, Option<u64>),
 }
 
 /// Reads parts up to the end of the line.
-pub(super) fn parse(line: &mut Line<'_>) -> Parsed<Vec<Part>> {
-    let mut parts = sequence(line, End::Line, 0)?;
+pub(super) fn parse(line: &mut Line<'_>, yarns: &mut Yarns) -> Parsed<Row> {
+    let yarn = yarns.current;
+    let mut parts = sequence(line, End::Line, 0, yarns)?;
     if !line.is_empty() {
         return Err(line.expected("a stitch"));
     }
-    if parts.is_empty() {
+    if parts.iter().all(|part| matches!(part.kind, PartKind::With(_))) {
         return Err(line.expected("stitches"));
     }
     // "Row 1: knit" knits the whole row.
-    if let [part] = parts.as_mut_slice()
-        && let PartKind::Stitches(_, 1) = part.kind
+    let mut worked = parts.iter_mut().filter(|part| !matches!(part.kind, PartKind::With(_)));
+    if let (Some(part), None) = (worked.next(), worked.next())
+        && let PartKind::Stitches(Stitch::Knit | Stitch::Purl, 1) = part.kind
         && !part.source.ends_with(|c: char| c.is_ascii_digit())
     {
         let whole = part.clone();
         part.kind = PartKind::Fill(vec![whole], 1, Some(0));
     }
-    Ok(parts)
+    Ok(Row { parts, yarn })
 }
 
 /// What ends a sequence of parts.
@@ -55,7 +69,7 @@ enum End {
     Star,
 }
 
-fn sequence(line: &mut Line<'_>, end: End, depth: usize) -> Parsed<Vec<Part>> {
+fn sequence(line: &mut Line<'_>, end: End, depth: usize, yarns: &mut Yarns) -> Parsed<Vec<Part>> {
     if depth > DEEPEST_NESTING {
         return Err(line.error(Reason::TooDeep));
     }
@@ -66,12 +80,13 @@ fn sequence(line: &mut Line<'_>, end: End, depth: usize) -> Parsed<Vec<Part>> {
         let kind = match (line.sign(), end) {
             (Some('*'), End::Star) => break,
             (Some(close), End::Bracket(closer)) if close == closer => break,
-            (Some(open @ ('[' | '(')), _) => bracket(line, open, depth)?,
-            (Some('*'), _) => star(line, depth)?,
+            (Some(open @ ('[' | '(')), _) => bracket(line, open, depth, yarns)?,
+            (Some('*'), _) => star(line, depth, yarns)?,
             (Some(_), _) => return Err(line.expected("a stitch")),
             (None, _) => match line.word() {
                 None => break,
                 Some("rep" | "repeat") if end == End::Star => break,
+                Some("with") => PartKind::With(yarns.switch(line)?),
                 Some(_) => stitches(line)?,
             },
         };
@@ -83,27 +98,57 @@ fn sequence(line: &mut Line<'_>, end: End, depth: usize) -> Parsed<Vec<Part>> {
 }
 
 /// `[…]` or `(…)` and how often.
-fn bracket(line: &mut Line<'_>, open: char, depth: usize) -> Parsed<PartKind> {
+fn bracket(line: &mut Line<'_>, open: char, depth: usize, yarns: &mut Yarns) -> Parsed<PartKind> {
     let start = line.place().start;
     line.advance(1);
     let closer = if open == '[' { ']' } else { ')' };
-    let parts = sequence(line, End::Bracket(closer), depth + 1)?;
+    let parts = sequence(line, End::Bracket(closer), depth + 1, yarns)?;
     if !line.take_sign(closer) {
         return Err(line.expected("the closing bracket"));
     }
+    if matches!(line.word(), Some("in" | "into")) {
+        return increase(line, &parts, start);
+    }
     let count = fixed_count(line, &parts, start)?;
     if let Some(leave) = stretch(line)? {
-        return Ok(PartKind::Fill(parts, count, Some(leave)));
+        return fill(line, parts, count, Some(leave), start);
     }
     let times = times(line)?.unwrap_or(1);
     repeat(line, parts, count, times, start)
 }
 
+/// `(k1, yo, k1) in next st`: several loops out of one.
+fn increase(line: &mut Line<'_>, parts: &[Part], start: usize) -> Parsed<PartKind> {
+    let place = start..line.end_of_last();
+    line.advance(1);
+    line.take_word(&["the"]);
+    line.take_word(&["next", "same", "1", "one"]);
+    if !line.take_word(&["st", "stitch"]) {
+        return Err(line.expected("`next st`"));
+    }
+    let mut worked = Vec::new();
+    for part in parts {
+        let (into, count) = match part.kind {
+            PartKind::Stitches(Stitch::Knit, count) => (Into::Knit, count),
+            PartKind::Stitches(Stitch::Purl, count) => (Into::Purl, count),
+            PartKind::Stitches(Stitch::YarnOver, 1) => (Into::YarnOver, 1),
+            _ => (Into::YarnOver, u64::MAX),
+        };
+        // One more than can be is as good as any.
+        worked.extend((0..count.min(Parts::MOST as u64 + 1)).map(|_| into));
+    }
+    let parts = Parts::new(&worked).ok_or_else(|| {
+        let part = line.source(&place);
+        line.error_at(place.clone(), Reason::Increase { part })
+    })?;
+    Ok(PartKind::Stitches(Stitch::Increase(parts), times(line)?.unwrap_or(1)))
+}
+
 /// `*…*`, `*…* 3 times`, `*…*; rep from * to end` or `*…; rep from * to end`.
-fn star(line: &mut Line<'_>, depth: usize) -> Parsed<PartKind> {
+fn star(line: &mut Line<'_>, depth: usize, yarns: &mut Yarns) -> Parsed<PartKind> {
     let start = line.place().start;
     line.advance(1);
-    let parts = sequence(line, End::Star, depth + 1)?;
+    let parts = sequence(line, End::Star, depth + 1, yarns)?;
     let closed = line.take_sign('*');
     let count = fixed_count(line, &parts, start)?;
     // A separator may stand between the closing star and "rep from *".
@@ -117,23 +162,23 @@ fn star(line: &mut Line<'_>, depth: usize) -> Parsed<PartKind> {
             return Err(line.expected("`from *`"));
         }
         if let Some(leave) = stretch(line)? {
-            return Ok(PartKind::Fill(parts, count, Some(leave)));
+            return fill(line, parts, count, Some(leave), start);
         }
         return match times(line)? {
             // Knitters count the times after the first.
             Some(more) => repeat(line, parts, count, more + 1, start),
-            None => Ok(PartKind::Fill(parts, count, None)),
+            None => fill(line, parts, count, None, start),
         };
     }
     if !closed {
         return Err(line.expected("a closing `*` or `rep from *`"));
     }
     if let Some(leave) = stretch(line)? {
-        return Ok(PartKind::Fill(parts, count, Some(leave)));
+        return fill(line, parts, count, Some(leave), start);
     }
     match times(line)? {
         Some(times) => repeat(line, parts, count, times, start),
-        None => Ok(PartKind::Fill(parts, count, None)),
+        None => fill(line, parts, count, None, start),
     }
 }
 
@@ -153,13 +198,14 @@ fn stitches(line: &mut Line<'_>) -> Parsed<PartKind> {
     let word = line.word().unwrap_or_default().to_owned();
     let unknown = || Reason::UnknownStitch { word: line.source(&place) };
     let (name, digits) = match word.find(|c: char| c.is_ascii_digit()) {
-        Some(at) => word.split_at(at),
-        None => (word.as_str(), ""),
+        // `k2tog` and its like have a digit of their own.
+        Some(at) if Stitch::named(&word).is_none() => word.split_at(at),
+        _ => (word.as_str(), ""),
     };
     let stitch = match name {
-        "k" | "knit" => Stitch::Knit,
-        "p" | "purl" => Stitch::Purl,
-        _ => return Err(line.error(unknown())),
+        "knit" => Stitch::Knit,
+        "purl" => Stitch::Purl,
+        _ => Stitch::named(name).ok_or_else(|| line.error(unknown()))?,
     };
     if !digits.is_empty() {
         if !digits.bytes().all(|b| b.is_ascii_digit()) {
@@ -167,17 +213,51 @@ fn stitches(line: &mut Line<'_>) -> Parsed<PartKind> {
         }
         let count = line.count(digits)?;
         line.advance(1);
-        return Ok(PartKind::Stitches(stitch, count));
+        return Ok(PartKind::Stitches(slipped(line, stitch)?, count));
     }
     line.advance(1);
     if let Some(leave) = stretch(line)? {
+        let (start, takes) = (place.start, stitch.takes() as u64);
         let one = Part { kind: PartKind::Stitches(stitch, 1), source: line.source(&place), place };
-        return Ok(PartKind::Fill(vec![one], 1, Some(leave)));
+        return fill(line, vec![one], takes, Some(leave), start);
+    }
+    if !matches!(stitch, Stitch::Knit | Stitch::Purl | Stitch::Slip { .. }) {
+        return Ok(PartKind::Stitches(stitch, times(line)?.unwrap_or(1)));
     }
     let counted = line.word().is_some_and(|word| word.starts_with(|c: char| c.is_ascii_digit()));
     let count = if counted { line.number("a count")? } else { 1 };
     line.take_word(&["st", "sts", "stitch", "stitches"]);
-    Ok(PartKind::Stitches(stitch, count))
+    Ok(PartKind::Stitches(slipped(line, stitch)?, count))
+}
+
+/// `sl1 purlwise with yarn in front`, `sl1 wyif`: where the yarn passes. The other words say how the needle goes in,
+/// which leaves no trace in the fabric.
+fn slipped(line: &mut Line<'_>, stitch: Stitch) -> Parsed<Stitch> {
+    let Stitch::Slip { mut in_front } = stitch else { return Ok(stitch) };
+    line.take_word(&["purlwise", "pwise", "pw", "knitwise", "kwise", "kw"]);
+    if line.take_word(&["wyif"]) {
+        in_front = true;
+    } else if line.take_word(&["wyib"]) {
+        in_front = false;
+    } else if line.word() == Some("with") && line.word_after(1) == Some("yarn") {
+        line.advance(2);
+        line.take_word(&["in"]);
+        in_front = line.word() == Some("front");
+        if !line.take_word(&["front", "back"]) {
+            return Err(line.expected("`front` or `back`"));
+        }
+    }
+    Ok(Stitch::Slip { in_front })
+}
+
+/// Parts that fill the row; they must take stitches of it.
+fn fill(line: &Line<'_>, parts: Vec<Part>, takes: u64, leave: Option<u64>, start: usize) -> Parsed<PartKind> {
+    if takes == 0 {
+        let place = start..line.end_of_last();
+        let part = line.source(&place);
+        return Err(line.error_at(place, Reason::TakesNothing { part }));
+    }
+    Ok(PartKind::Fill(parts, takes, leave))
 }
 
 /// `to end`, `to last 3 sts`, `across`, `around`, `all sts`: how many stitches are left over.
@@ -235,7 +315,7 @@ fn times(line: &mut Line<'_>) -> Parsed<Option<u64>> {
     Ok(Some(times))
 }
 
-/// Stitches of parts that are to be repeated; none of them may stretch.
+/// Stitches that parts to be repeated take; none of them may stretch.
 fn fixed_count(line: &Line<'_>, parts: &[Part], start: usize) -> Parsed<u64> {
     if parts.is_empty() {
         return Err(line.error_at(start..line.end_of_last(), Reason::NothingToRepeat));
@@ -255,34 +335,48 @@ fn fixed_count(line: &Line<'_>, parts: &[Part], start: usize) -> Parsed<u64> {
 }
 
 impl Part {
-    /// Its stitches, unless it stretches. Products were checked when the part was read.
+    /// The stitches that it takes, unless it stretches. Products were checked when the part was read.
     fn fixed(&self) -> Option<u64> {
         match &self.kind {
-            PartKind::Stitches(_, count) => Some(*count),
+            PartKind::Stitches(stitch, count) => Some(count * stitch.takes() as u64),
+            PartKind::With(_) => Some(0),
             PartKind::Repeat(_, count, times) => Some(count * times),
             PartKind::Fill(..) => None,
         }
     }
 
-    fn work(&self, times: u64, row: &mut Vec<Stitch>) {
+    /// The stitches that it leaves when it is worked so often.
+    fn leaves(&self, times: u64) -> u64 {
+        let sum = |parts: &[Self]| parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.leaves(1)));
+        let once = match &self.kind {
+            PartKind::Stitches(stitch, count) => count.saturating_mul(stitch.leaves() as u64),
+            PartKind::With(_) => 0,
+            PartKind::Repeat(parts, _, times) => sum(parts).saturating_mul(*times),
+            PartKind::Fill(parts, ..) => sum(parts),
+        };
+        once.saturating_mul(times)
+    }
+
+    fn work(&self, times: u64, yarn: &mut u8, row: &mut Vec<(Stitch, u8)>) {
         for _ in 0..times {
             match &self.kind {
                 PartKind::Stitches(stitch, count) => {
-                    row.extend((0..*count).map(|_| *stitch));
+                    row.extend((0..*count).map(|_| (*stitch, *yarn)));
                 }
+                PartKind::With(other) => *yarn = *other,
                 PartKind::Repeat(parts, _, times) => {
                     for _ in 0..*times {
-                        parts.iter().for_each(|part| part.work(1, row));
+                        parts.iter().for_each(|part| part.work(1, yarn, row));
                     }
                 }
-                PartKind::Fill(parts, ..) => parts.iter().for_each(|part| part.work(1, row)),
+                PartKind::Fill(parts, ..) => parts.iter().for_each(|part| part.work(1, yarn, row)),
             }
         }
     }
 }
 
 /// Works a row of `total` stitches, in the order and as seen by the knitter.
-pub(super) fn work(parts: &[Part], total: u64, row: u64) -> Parsed<Vec<Stitch>> {
+pub(super) fn work(Row { parts, yarn }: &Row, total: u64, row: u64) -> Parsed<Vec<(Stitch, u8)>> {
     let error = |part: &Part, reason| InstructionError::new(part.place.clone(), Some(row), reason);
     // Count first: nothing is laid out before the counts are known to work out.
     let mut done = 0_u64;
@@ -334,9 +428,14 @@ pub(super) fn work(parts: &[Part], total: u64, row: u64) -> Parsed<Vec<Stitch>> 
         let reason = Reason::TooFew { part: last.source.clone(), found: done, total };
         return Err(error(last, reason));
     }
+    let leaves = parts.iter().zip(&plan).fold(0_u64, |sum, (part, times)| sum.saturating_add(part.leaves(*times)));
+    if let Err(size) = Chart::check_size(leaves.max(1), 1) {
+        return Err(error(&parts[parts.len() - 1], Reason::Size(size)));
+    }
     let mut stitches = Vec::with_capacity(usize::try_from(total).unwrap_or(0));
+    let mut yarn = *yarn;
     for (part, times) in parts.iter().zip(plan) {
-        part.work(times, &mut stitches);
+        part.work(times, &mut yarn, &mut stitches);
     }
     Ok(stitches)
 }

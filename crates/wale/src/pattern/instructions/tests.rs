@@ -1,7 +1,8 @@
 //! What written instructions give, and how bad ones are refused.
 
 use super::*;
-use crate::pattern::chart::{Side, Stitch};
+use crate::pattern::Side;
+use crate::pattern::stitch::Stitch;
 use crate::pattern::symbols::write_symbols;
 use proptest::prelude::*;
 
@@ -72,7 +73,10 @@ fn counts_that_do_not_work_out_are_named() {
         ("k4, p4, k4, p1", "row 1: up to `k4` the row takes 12 stitches, but there are 10", "k4"),
         ("k4, p4", "row 1: the row ends with `p4` after 8 stitches, but there are 10", "p4"),
         ("*k1*, *p1*", "row 1: `*p1*` stretches to fill the row, which only one part of a row can do here", "*p1*"),
-        ("k2, k2tog, k6", "row 1: `k2tog` is no stitch that wale knows; it knows `k` and `p`", "k2tog"),
+        ("k2, (k, yo) in next st, k7", "row 1: `(k, yo)` cannot be worked into one stitch: 2 to 9 knits, purls and single yarn-overs between them can", "(k, yo)"),
+        ("k2, (k, p) in them, k7", "row 1: expected `next st`, found `them`", "them"),
+        ("k2, sl1 with yarn up, k7", "row 1: expected `front` or `back`, found `up`", "up"),
+        ("*yo*, k10", "row 1: `*yo*` takes no stitch of the row below, so it cannot fill the row", "*yo*"),
         ("k0", "row 1: a count must be from 1 to 16000000, not `0`", "k0"),
         ("[] 3 times", "row 1: there is nothing to repeat", "[]"),
         ("[k1", "row 1: expected the closing bracket, found the end of the line", ""),
@@ -159,7 +163,7 @@ proptest! {
             .collect();
         let chart = Chart::new(rows).unwrap();
         let written = read_instructions(&write_instructions(&chart, working), None).unwrap();
-        prop_assert_eq!(written.chart, chart);
+        prop_assert_eq!(&written.chart, &chart);
         prop_assert_eq!(written.working, working);
         prop_assert_eq!(written.cast_on, Some(columns as u64));
     }
@@ -175,7 +179,7 @@ proptest! {
             prop::sample::select(vec![
                 "Cast on 8", "\nRow 1", "\nRow 2 (WS)", "\nRnds 1-2", ":", "*", "[", "]", "(", ")", ",", ";",
                 "k2", "p", "knit", "to end", "to last 2 sts", "rep from *", "3 times", "rep rows 1-2", "x",
-                "\nRep rows 1", "twice", "-", "99999999999999999999", "#", "×",
+                "\nRep rows 1", "twice", "-", "with A", "yo", "kfb", "k2tog", "in next st", "sl1", "wyif", "m1", "99999999999999999999", "#", "×",
             ]),
             0..30,
         )
@@ -184,4 +188,43 @@ proptest! {
             prop_assert!(words.join(" ").get(error.span.clone()).is_some(), "a span outside the text");
         }
     }
+}
+
+#[test]
+fn a_stitch_that_is_not_known_is_named_with_those_that_are() {
+    let (message, place) = refused("Cast on 10\nRow 1: k2, c4f, k4\n");
+    assert!(message.starts_with("row 1: `c4f` is no stitch that wale knows; it knows k, p, yo, k2tog, ssk"), "{message}");
+    assert_eq!(place, "c4f");
+}
+
+#[test]
+fn rows_are_counted_by_what_the_row_before_leaves() {
+    let text = "Cast on 3\nRow 1 (RS): kfb, k1, m1, k1\nRow 2: p\nRow 3: ssk, k1, k2tog\nRow 4: p3tog\n";
+    assert_eq!(rows(text), ["kmkf", "kkkkk", "/k\\", ">"]);
+    let (message, _) = refused("Cast on 3\nRow 1: k2tog, k1\nRow 2: p3\n");
+    assert_eq!(message, "row 2: up to `p3` the row takes 3 stitches, but there are 2");
+}
+
+#[test]
+fn increases_slips_and_yarns_are_read() {
+    let text = "Cast on 4\nRow 1 (RS): with A, k1, (k1, yo, k1) in next st, sl1 purlwise wyif, with B, k1\nRow 2 (WS): with A, sl 2 wyib, k to end\n";
+    let written = read_instructions(text, None).unwrap();
+    let Stitch::Increase(parts) = written.chart.rows()[0][2] else { panic!("{:?}", written.chart) };
+    assert_eq!(parts.to_string(), "(k, yo, k) in 1 st");
+    assert_eq!(written.chart.rows()[0][1], Stitch::Slip { in_front: true });
+    // From behind, the yarn that is held at the back passes in front.
+    assert_eq!(written.chart.rows()[1][0], Stitch::Slip { in_front: true });
+    assert_eq!(written.yarns, ["A", "B"]);
+    assert_eq!((written.chart.yarn(0, 0), written.chart.yarn(0, 3), written.chart.yarn(1, 0)), (1, 0, 0));
+    assert_eq!(read_instructions(&write_instructions(&written.chart, written.working), None).unwrap().chart, written.chart);
+}
+
+#[test]
+fn lace_is_read_as_knitters_write_it() {
+    let text = "Cast on 18\nRow 1 (RS): *k2tog 3 times, [yo, k1] 6 times, k2tog 3 times*\nRow 2 (WS): p7, p2tog, yo, ssp, yo, p7\n";
+    let written = read_instructions(text, None).unwrap();
+    // Right-side rows are worked from the right, wrong-side rows are turned over.
+    let drawn: Vec<String> = write_symbols(&written.chart);
+    assert_eq!(drawn, ["kkkkkkk/o\\okkkkkkk", "///kokokokokoko///"]);
+    assert_eq!(read_instructions(&write_instructions(&written.chart, written.working), None).unwrap(), written);
 }

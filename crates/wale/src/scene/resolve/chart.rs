@@ -8,7 +8,7 @@ use super::{Failure, exactly_one};
 use crate::pattern::instructions::{self, LARGEST_TEXT, read_instructions};
 use crate::pattern::named::{self, NamedPatternError, named_pattern};
 use crate::pattern::symbols::{Legend, default_legend, read_symbols};
-use crate::pattern::{Chart, ChartError, Side, Stitch, Working};
+use crate::pattern::{Chart, ChartError, Lean, Side, Stitch, Working};
 use crate::scene::error::{Complaint, ErrorClass, SceneError, nearest, shortened};
 use crate::scene::schema::{ChartText, FirstRow, StitchName, Worked};
 
@@ -105,6 +105,25 @@ fn sized(chart: &Chart, text: &ChartText, required: bool) -> Result<Chart, Compl
     chart.repeat(columns as usize, rows as usize).map_err(refused)
 }
 
+fn stitch_of(name: StitchName) -> Stitch {
+    let together = |knit, loops, lean| Stitch::Together { knit, loops, lean };
+    match name {
+        StitchName::Knit => Stitch::Knit,
+        StitchName::Purl => Stitch::Purl,
+        StitchName::Yo => Stitch::YarnOver,
+        StitchName::K2tog => together(true, 2, Lean::Right),
+        StitchName::Ssk => together(true, 2, Lean::Left),
+        StitchName::P2tog => together(false, 2, Lean::Right),
+        StitchName::Ssp => together(false, 2, Lean::Left),
+        StitchName::K3tog => together(true, 3, Lean::Right),
+        StitchName::Sssk => together(true, 3, Lean::Left),
+        StitchName::P3tog => together(false, 3, Lean::Right),
+        StitchName::Sssp => together(false, 3, Lean::Left),
+        StitchName::Cdd => together(true, 3, Lean::Centre),
+        StitchName::Cddp => together(false, 3, Lean::Centre),
+    }
+}
+
 fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
     let legend = match &text.legend {
         None => default_legend(),
@@ -117,18 +136,14 @@ fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
                     let what = format!("\"{}\" is not one symbol", shortened(symbol));
                     return Err(Complaint::new(path, what).why("every stitch of a chart is one character"));
                 };
-                let stitch = match name {
-                    StitchName::Knit => Stitch::Knit,
-                    StitchName::Purl => Stitch::Purl,
-                };
-                legend.insert(c, stitch);
+                legend.insert(c, stitch_of(*name));
             }
             legend
         }
     };
     read_symbols(lines, &legend).map_err(|error| {
         let size = match &error.reason {
-            crate::pattern::symbols::SymbolErrorReason::Size(size) => Some(size.clone()),
+            crate::pattern::symbols::SymbolErrorReason::Chart(size) => Some(size.clone()),
             _ => None,
         };
         let place = match &error.bytes {

@@ -18,7 +18,7 @@ pub struct ChartText {
     /// `k K | □` are knit and `p P - • .` purl, seen from the front in every row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symbols: Option<Vec<String>>,
-    /// Symbols of your own: `{ "x" = "knit", "o" = "purl" }`.
+    /// Symbols of your own: `{ "x" = "knit", "o" = "yo", "/" = "k2tog" }`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub legend: Option<BTreeMap<String, StitchName>>,
     /// A file of written row instructions beside the scene, as in "rib.knit".
@@ -38,14 +38,36 @@ pub struct ChartText {
     pub first_row: Option<FirstRow>,
 }
 
-/// A stitch by name.
+/// A stitch by name, as seen from the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum StitchName {
-    /// A knit seen from the front.
+    /// A knit.
     Knit,
-    /// A purl seen from the front.
+    /// A purl.
     Purl,
+    /// A yarn-over.
+    Yo,
+    /// Two loops knitted together, the left one in front.
+    K2tog,
+    /// Two loops knitted together, the right one in front.
+    Ssk,
+    /// Two loops purled together, the left one in front.
+    P2tog,
+    /// Two loops purled together, the right one in front.
+    Ssp,
+    /// Three loops knitted together, the left one in front.
+    K3tog,
+    /// Three loops knitted together, the right one in front.
+    Sssk,
+    /// Three loops purled together, the left one in front.
+    P3tog,
+    /// Three loops purled together, the right one in front.
+    Sssp,
+    /// Three loops knitted together, the middle one in front.
+    Cdd,
+    /// Three loops purled together, the middle one in front.
+    Cddp,
 }
 
 /// How rows follow each other.
