@@ -49,10 +49,22 @@ pub enum Command {
     Export(Export),
     /// Measure speed and memory on this machine
     Bench(Bench),
+    /// List the stitch patterns that wale knows by name, or show one of them
+    Patterns(Patterns),
     /// Print the JSON Schema of scene files
     Schema,
     /// Print version, features and machine
     Version(Version),
+}
+
+/// `wale patterns`
+#[derive(Debug, Args)]
+pub struct Patterns {
+    /// A pattern to show: its chart and how it is worked; all are listed if not given
+    pub name: Option<String>,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// `wale new`
@@ -101,6 +113,9 @@ pub struct Manner {
 /// `wale check`
 #[derive(Debug, Args)]
 pub struct Check {
+    /// Stitches that a float may pass before it is mentioned
+    #[arg(long, value_name = "STITCHES", default_value_t = 5)]
+    pub longest_float: u32,
     /// Scene file
     pub scene: PathBuf,
     /// Print JSON
@@ -171,6 +186,9 @@ pub struct Relax {
 /// `wale inspect`
 #[derive(Debug, Args)]
 pub struct Inspect {
+    /// Stitches that a float may pass before it is mentioned
+    #[arg(long, value_name = "STITCHES", default_value_t = 5)]
+    pub longest_float: u32,
     /// Scene file or run folder
     pub path: PathBuf,
     /// Print JSON

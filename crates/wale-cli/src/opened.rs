@@ -73,7 +73,7 @@ impl OpenedScene {
     pub fn start(&self) -> Start {
         let Scene { chart, working, yarn, fabric, plan, .. } = &self.scene;
         let mut start = Start::new(chart, *working, yarn, fabric, plan.simulation.rest_shape_compensation);
-        start.network.yarn_color.fill(self.scene.yarn_color);
+        self.scene.color_yarns(&mut start.network);
         start
     }
 
@@ -95,7 +95,7 @@ impl OpenedScene {
 /// The fabric of a scene as its chart lays it out, in its colour.
 fn plain_network(scene: &Scene) -> Network {
     let mut network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
-    network.yarn_color.fill(scene.yarn_color);
+    scene.color_yarns(&mut network);
     network
 }
 

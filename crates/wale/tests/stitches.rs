@@ -102,8 +102,12 @@ fn check_graph(graph: &LoopGraph) {
 fn check_network(graph: &LoopGraph, network: &Network) {
     let (yarn, card) = cards();
     for y in 0..network.yarn_count() {
-        let arcs = &network.arc_length[network.yarn_passes(YarnId::new(y))];
-        assert!(arcs.windows(2).all(|pair| pair[1] > pair[0]), "arc lengths grow");
+        let passes = network.yarn_passes(YarnId::new(y));
+        for p in passes.start..passes.end - 1 {
+            let places = [p, p + 1].map(|p| network.chart_place[network.pass_node[p].index()]);
+            let length = network.arc_length[p + 1] - network.arc_length[p];
+            assert!(length > 1e-3 * card.wale_spacing, "{length} of {:?} at {places:?}", network.segment_kind[p]);
+        }
         let kinds = &network.segment_kind[network.yarn_passes(YarnId::new(y))];
         // A segment of a stitch contact is never next to another of the same contact.
         assert!(!kinds.windows(2).any(|pair| pair == [SegmentKind::Stitch; 2]));

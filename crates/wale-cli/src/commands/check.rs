@@ -5,6 +5,7 @@ use wale::measure::Census;
 use wale::record::{Checkpoints, Frames};
 
 use crate::arguments::Check;
+use crate::commands::inspect::yarns_and_flaws;
 use crate::exit::Failure;
 use crate::opened::OpenedScene;
 use crate::output::{bytes, grouped, span};
@@ -46,6 +47,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         census.yarn_length_m,
         1e3 * census.mass_kg
     )?;
+    yarns_and_flaws(&census, arguments.longest_float)?;
     say!(
         "  run      {} s, {} frames, steps of at most {} ms",
         plan.duration,

@@ -66,6 +66,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         census.yarn_length_m,
         1e3 * census.mass_kg
     )?;
+    yarns_and_flaws(&census, arguments.longest_float)?;
     let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
     say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
     say!(
@@ -80,6 +81,35 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         shape.side_edges.course_per_m,
         shape.end_edges.wale_per_m
     )
+}
+
+/// Prints how much there is of each yarn, and what a knitter would mend: dropped loops and long floats.
+pub fn yarns_and_flaws(census: &Census, longest_float: u32) -> Result<(), Failure> {
+    if census.yarn_lengths_m.len() > 1 {
+        for (at, length) in census.yarn_lengths_m.iter().enumerate() {
+            let mass = 1e3 * census.mass_kg * length / census.yarn_length_m;
+            say!("             {length:>8.3} m, {mass:.3} g of yarn {}", at + 1)?;
+        }
+    }
+    let dropped = census.unsupported_loops.len();
+    if dropped > 0 {
+        let shown: Vec<String> = census
+            .unsupported_loops
+            .iter()
+            .take(5)
+            .map(|[row, column]| format!("row {} column {}", row + 1, column + 1))
+            .collect();
+        let more = if dropped > shown.len() { ", …" } else { "" };
+        say!("  dropped  {dropped} loops that nothing holds: {}{more}", shown.join(", "))?;
+    }
+    let long = census.floats.iter().take_while(|float| **float > longest_float).count();
+    if long > 0 {
+        say!(
+            "  floats   {long} pass more than {longest_float} stitches, the longest {}",
+            census.floats.first().copied().unwrap_or(0)
+        )?;
+    }
+    Ok(())
 }
 
 fn run_facts(reader: &RunReader, last: &Frame) -> Result<Value, Failure> {

@@ -42,6 +42,7 @@ pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network 
         }
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap_or(u32::MAX));
         network.yarn_closure.push(None);
+        network.yarn_kind.push(0);
         network.yarn_color.push(color);
     };
     for row in 0..rows {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::model::{FabricCard, Network, NodeId, YarnCard};
+use crate::model::{FabricCard, Network, NodeId, YarnCard, YarnId};
 
 /// What a network consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -15,6 +15,10 @@ pub struct Census {
     pub loops: usize,
     /// Loops that are knit stitches as seen from the front.
     pub knit_loops: usize,
+    /// Loops that nothing holds: row and column of the chart, from 0.
+    pub unsupported_loops: Vec<[u32; 2]>,
+    /// Places of the needle that each float passes, the longest first.
+    pub floats: Vec<u32>,
     /// Stitch contacts.
     pub stitch_contacts: usize,
     /// Yarns.
@@ -29,6 +33,8 @@ pub struct Census {
     pub degrees_of_freedom: usize,
     /// Length of all real yarn \[m\]: the model's rest length over the card's path ratio.
     pub yarn_length_m: f64,
+    /// The same by the fabric's yarns, in their order \[m\].
+    pub yarn_lengths_m: Vec<f64>,
     /// Mass of all yarns \[kg\].
     pub mass_kg: f64,
 }
@@ -47,11 +53,25 @@ impl Census {
         }
         let sliding = network.pass_slides.iter().filter(|slides| **slides).count();
         let yarn_length = network.yarn_length() / card.path_ratio;
+        let kinds = network.yarn_kind.iter().max().map_or(0, |most| usize::from(*most) + 1);
+        let mut yarn_lengths_m = vec![0.0; kinds];
+        for (y, kind) in network.yarn_kind.iter().enumerate() {
+            yarn_lengths_m[usize::from(*kind)] += network.length_of(YarnId::new(y)) / card.path_ratio;
+        }
+        let mut floats = network.floats.clone();
+        floats.sort_unstable_by(|a, b| b.cmp(a));
         Self {
             rows: network.chart_size[0],
             columns: network.chart_size[1],
             loops: network.loops.len(),
             knit_loops: network.loops.iter().filter(|info| info.knit).count(),
+            unsupported_loops: network
+                .loops
+                .iter()
+                .filter(|info| !info.held)
+                .map(|info| [info.row, info.column])
+                .collect(),
+            floats,
             stitch_contacts: network.stitches.len(),
             yarns: network.yarn_count(),
             nodes: network.node_count(),
@@ -59,6 +79,7 @@ impl Census {
             passes: network.pass_count(),
             degrees_of_freedom: 3 * network.node_count() + sliding,
             yarn_length_m: yarn_length,
+            yarn_lengths_m,
             mass_kg: yarn_length * yarn.linear_density,
         }
     }

@@ -156,7 +156,7 @@ mod tests {
         for row in 0..rows {
             for column in 0..columns {
                 let node = NodeId::new(frame.positions.len());
-                network.loops.push(LoopInfo { row, column, nodes: vec![node], knit: true });
+                network.loops.push(LoopInfo { row, column, nodes: vec![node], knit: true, held: true });
                 let middle = |at: u32, count: u32| f64::from(at) - f64::from(count - 1) / 2.0;
                 frame.positions.push(place(middle(row, rows), middle(column, columns)));
             }

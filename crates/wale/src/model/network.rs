@@ -91,6 +91,8 @@ pub struct LoopInfo {
     pub nodes: Vec<NodeId>,
     /// Seen from the front: `true` for a knit, `false` for a purl.
     pub knit: bool,
+    /// Whether anything holds it: a loop drawn through it, or the bind-off. What nothing holds is a dropped stitch.
+    pub held: bool,
 }
 
 /// The fabric's yarns, nodes and contacts. Lengths in metres.
@@ -120,6 +122,8 @@ pub struct Network {
     pub yarn_closure: Vec<Option<([i16; 2], f64)>>,
     /// Colour of each yarn as sRGB, for pictures and exports.
     pub yarn_color: Vec<[u8; 3]>,
+    /// Which of the fabric's yarns each yarn is a length of.
+    pub yarn_kind: Vec<u8>,
     /// First entry of each node's stack in `stack_pass`; one entry more than there are nodes.
     pub stack_start: Vec<u32>,
     /// Passes of each node's stack, front to back as seen from the right side of the fabric.
@@ -134,6 +138,8 @@ pub struct Network {
     pub stitches: Vec<StitchContact>,
     /// Loops of the chart.
     pub loops: Vec<LoopInfo>,
+    /// How many places of the needle each float passes, in the order of the yarns; strands that pass none are no floats.
+    pub floats: Vec<u32>,
     /// Rows and columns of the chart.
     pub chart_size: [u32; 2],
     /// Places on the needle after each row of the chart.
@@ -216,15 +222,17 @@ impl Network {
     /// Total rest length of all yarns \[m\].
     #[must_use]
     pub fn yarn_length(&self) -> f64 {
-        (0..self.yarn_count())
-            .map(|y| {
-                let passes = self.yarn_passes(YarnId::new(y));
-                match self.yarn_closure[y] {
-                    Some((_, length)) => length,
-                    None if passes.len() < 2 => 0.0,
-                    None => self.arc_length[passes.end - 1] - self.arc_length[passes.start],
-                }
-            })
-            .sum()
+        (0..self.yarn_count()).map(|y| self.length_of(YarnId::new(y))).sum()
+    }
+
+    /// Rest length of one yarn \[m\]; of a closed one, that of a period.
+    #[must_use]
+    pub fn length_of(&self, yarn: YarnId) -> f64 {
+        let passes = self.yarn_passes(yarn);
+        match self.yarn_closure[yarn.index()] {
+            Some((_, length)) => length,
+            None if passes.len() < 2 => 0.0,
+            None => self.arc_length[passes.end - 1] - self.arc_length[passes.start],
+        }
     }
 }

@@ -134,7 +134,7 @@ mod tests {
     /// Two rows of two loops of one node each, between a cast-on node (0) and an end node (5).
     fn small() -> Network {
         let node = |n: usize| NodeId::new(n);
-        let stitch = |n: usize, row, column| LoopInfo { row, column, nodes: vec![node(n)], knit: true };
+        let stitch = |n: usize, row, column| LoopInfo { row, column, nodes: vec![node(n)], knit: true, held: true };
         Network {
             pass_node: [0, 2, 1, 3, 4, 5].map(node).to_vec(),
             yarn_start: vec![0, 6],

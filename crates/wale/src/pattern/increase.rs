@@ -47,6 +47,22 @@ impl Parts {
         Self { count: parts.len() as u8, code }
     }
 
+    /// The parts of a text such as `(k, yo, k) in 1 st`.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        let inner = text.strip_prefix('(')?.strip_suffix(") in 1 st")?;
+        let parts: Option<Vec<Part>> = inner
+            .split(',')
+            .map(|name| match name.trim() {
+                "k" => Some(Part::Knit),
+                "p" => Some(Part::Purl),
+                "yo" => Some(Part::YarnOver),
+                _ => None,
+            })
+            .collect();
+        Self::new(&parts?)
+    }
+
     /// How many.
     #[must_use]
     pub fn len(self) -> usize {
@@ -107,6 +123,8 @@ mod tests {
         let parts = Parts::new(&[K, O, P, O, K]).unwrap();
         assert_eq!(parts.iter().collect::<Vec<_>>(), [K, O, P, O, K]);
         assert_eq!(parts.to_string(), "(k, yo, p, yo, k) in 1 st");
+        assert_eq!(Parts::read(&parts.to_string()), Some(parts));
+        assert_eq!(Parts::read("(k, x) in 1 st"), None);
         let uneven = Parts::new(&[K, K, P]).unwrap();
         assert_eq!(uneven.from_behind().iter().collect::<Vec<_>>(), [K, P, P]);
         assert_eq!(uneven.from_behind().from_behind(), uneven);

@@ -138,7 +138,7 @@ impl<'a> Builder<'a> {
                 Form::Worked { .. } => {
                     let middle = self.middle(of);
                     for corner in 0..4 {
-                        self.add_node(self.layout.corner(middle, corner));
+                        self.add_node(self.layout.corner(middle, corner, self.share(of)));
                     }
                 }
                 Form::Open | Form::Lifted => {}
@@ -150,6 +150,7 @@ impl<'a> Builder<'a> {
                     column: of.column,
                     nodes: (first..self.network.position.len()).map(NodeId::new).collect(),
                     knit: of.form != (Form::Worked { knit: false }),
+                    held: !of.children.is_empty() || of.bound.is_some(),
                 });
             }
         }
@@ -244,13 +245,17 @@ impl<'a> Builder<'a> {
             Form::Open | Form::Lifted => self.upward(id, &mut steps),
         }
         // The feet of a loop that shares its parent with others lie as close as they do.
-        let siblings = of.parents.iter().map(|held| self.graph.of(held.of).children.len()).max().unwrap_or(1);
-        let share = u8::try_from(siblings).unwrap_or(u8::MAX).max(1);
         if let (Form::Worked { .. }, n) = (of.form, steps.len()) {
-            steps[0].onward.share = share;
-            steps[n - 2].onward.share = share;
+            steps[0].onward.share = self.share(of);
+            steps[n - 2].onward.share = self.share(of);
         }
         steps
+    }
+
+    /// With how many a loop shares the one that it is drawn through, itself counted.
+    fn share(&self, of: &Loop) -> u8 {
+        let siblings = of.parents.iter().map(|held| self.graph.of(held.of).children.len()).max();
+        u8::try_from(siblings.unwrap_or(1)).unwrap_or(u8::MAX).max(1)
     }
 
     /// The segment between two loops that follow each other in a row, `past` places of the needle. A yarn-over has legs
@@ -311,6 +316,7 @@ impl<'a> Builder<'a> {
             };
             let mut lead = match (onward, next) {
                 (Onward::Sinker { over }, Some((Stop::Loop { id: next, .. }, _))) => {
+                    self.network.floats.extend((*over > 0).then_some(*over));
                     let (from, to) = if rightward { (id, *next) } else { (*next, id) };
                     self.joint(graph.of(from), graph.of(to), *over)
                 }
@@ -372,7 +378,7 @@ impl<'a> Builder<'a> {
             path.push(step(node, PassKind::Edge, chain));
         }
         path.push(fixed(right));
-        self.lay_yarn(&path, self.graph.bind_off_yarn + 1);
+        self.lay_yarn(&path, self.graph.bind_off_yarn);
     }
 
     /// The ends of the bind-off: beside the edges of the fabric, or of a last row that is narrower.
@@ -441,6 +447,7 @@ impl<'a> Builder<'a> {
     fn close_yarn(&mut self, closure: Option<([i16; 2], f64)>, yarn: u8) {
         self.network.yarn_start.push(u32::try_from(self.network.pass_count()).expect("charts are limited to 32 bits"));
         self.network.yarn_closure.push(closure);
+        self.network.yarn_kind.push(yarn);
         self.network.yarn_color.push(YARN_COLORS[usize::from(yarn) % YARN_COLORS.len()]);
     }
 }

@@ -58,11 +58,11 @@ impl Layout {
         Place { position, front, chart: [column, row] }
     }
 
-    /// One of the four own nodes of a loop whose middle is there.
-    pub fn corner(&self, [column, row]: [f64; 2], corner: usize) -> Place {
+    /// One of the four own nodes of a loop whose middle is there, as much narrower as it shares its parent with others.
+    pub fn corner(&self, [column, row]: [f64; 2], corner: usize, share: u8) -> Place {
         let left = corner == LEFT_FOOT || corner == LEFT_LEG;
         let leg = corner == LEFT_LEG || corner == RIGHT_LEG;
-        let x = if leg { LEG } else { FOOT } * if left { -1.0 } else { 1.0 };
+        let x = if leg { LEG } else { FOOT } * if left { -1.0 } else { 1.0 } / f64::from(share);
         let y = if leg { CONTACT } else { -CONTACT };
         self.place(column + x, row + y)
     }

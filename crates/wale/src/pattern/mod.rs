@@ -1,10 +1,12 @@
 //! Stitch charts and what is made of them; this room knows no force.
 
 pub mod chart;
+pub mod image;
 pub mod increase;
 pub mod instructions;
 pub mod knit;
 mod layout;
+pub mod library;
 pub mod loops;
 pub mod named;
 mod places;

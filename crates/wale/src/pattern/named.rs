@@ -3,10 +3,17 @@
 use thiserror::Error;
 
 use super::chart::{Chart, ChartError};
+use super::library::patterns;
 
-/// The names that [`named_pattern`] knows, with an example of the counts that some take.
-pub const NAMES: [&str; 8] =
+/// The plain names that [`named_pattern`] knows beside those of the library, with an example of the counts that some
+/// take.
+pub const PLAIN: [&str; 8] =
     ["stockinette", "reverse stockinette", "garter", "rib 2x2", "seed", "moss", "basket 4x4", "welting 2+2"];
+
+/// All names that [`named_pattern`] knows.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    PLAIN.into_iter().chain(patterns().iter().map(|pattern| pattern.name.as_str()))
+}
 
 /// Why a text names no pattern.
 #[derive(Clone, PartialEq, Eq, Debug, Error)]
@@ -36,6 +43,10 @@ pub enum NamedPatternError {
 /// If the name is unknown, or its counts are missing, zero or too large.
 pub fn named_pattern(text: &str) -> Result<Chart, NamedPatternError> {
     let lower = text.to_lowercase();
+    let spaced = lower.split_whitespace().collect::<Vec<_>>().join(" ");
+    if let Some(pattern) = patterns().iter().find(|pattern| pattern.name == spaced) {
+        return Ok(pattern.chart.clone());
+    }
     let split = lower.find(|c: char| c.is_ascii_digit());
     let (name, counts) = lower.split_at(split.unwrap_or(lower.len()));
     let name = name.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -67,7 +78,7 @@ mod tests {
 
     #[test]
     fn every_listed_name_is_known() {
-        for name in NAMES {
+        for name in names() {
             assert!(named_pattern(name).is_ok(), "{name}");
         }
         assert_eq!(named_pattern(" Rib 1 x 3").unwrap(), Chart::rib(1, 3).unwrap());

@@ -5,6 +5,9 @@ use super::loops::{Form, Form2d, LoopGraph};
 /// Rounds in which rows of unequal counts find their places.
 const ROUNDS: usize = 60;
 
+/// Least distance of two bound-off loops, in columns.
+const BOUND: f64 = 0.6;
+
 /// Gives every loop its place, in columns and rows. `counts` are the places on the needle of the cast-on and after
 /// each row.
 ///
@@ -25,9 +28,12 @@ pub(super) fn lay_out(graph: &mut LoopGraph, counts: &[usize]) {
     if graph.form == Form2d::Sheet && counts.iter().any(|count| *count != counts[0]) {
         settle(graph);
     }
+    let mut least = f64::NEG_INFINITY;
     for bound in &mut graph.bound {
         let xs = bound.loops.iter().map(|id| graph.loops[id.index()].place[0]);
-        bound.place[0] = xs.sum::<f64>() / bound.loops.len().max(1) as f64;
+        // What was slipped up to here may come from another place of its row.
+        bound.place[0] = (xs.sum::<f64>() / bound.loops.len().max(1) as f64).max(least);
+        least = bound.place[0] + BOUND;
     }
 }
 

@@ -104,6 +104,13 @@ impl Stitch {
         NAMES.iter().find(|(known, ..)| *known == name).map(|(_, _, stitch)| *stitch)
     }
 
+    /// The stitch of a name, or an increase as [`Parts`] writes it: `(k, yo, k) in 1 st`.
+    #[must_use]
+    pub fn read(text: &str) -> Option<Self> {
+        let text = text.trim();
+        Self::named(text).or_else(|| Parts::read(text).map(Self::Increase))
+    }
+
     /// All stitches with their names and symbols; other names of the same last.
     pub fn all() -> impl Iterator<Item = (&'static str, char, Self)> {
         NAMES.into_iter()
@@ -218,6 +225,7 @@ mod tests {
             assert_eq!(stitch.symbol(), symbol);
             assert_eq!(stitch.from_behind().from_behind(), stitch);
             assert_eq!(stitch.front_to_back().len(), stitch.takes());
+            assert_eq!(Stitch::read(&stitch.to_string()), Some(stitch));
             let same = Stitch::all().filter(|(_, other, _)| *other == symbol);
             assert!(same.into_iter().all(|(_, _, other)| other == stitch), "{symbol} has two meanings");
         }

@@ -4,7 +4,7 @@ use super::loops::{LoopGraph, LoopId, Onward, Stop, Strand};
 use super::working::Working;
 
 /// Columns from an edge within which a yarn turns there; farther inside it goes straight up to its next row.
-const EDGE: u32 = 1;
+const EDGE: i32 = 1;
 /// Columns that a yarn is carried inside the fabric, from the last loop of a row to its first of a later row; farther away
 /// it is cut, and a new end begins.
 const CARRIED_COLUMNS: f64 = 3.0;
@@ -16,7 +16,7 @@ const CARRIED_ROWS: i32 = 6;
 pub(super) struct Made {
     pub id: LoopId,
     /// Twice its place on the needle; odd for a strand lifted between two places.
-    pub twice_column: u32,
+    pub twice_column: i32,
     pub yarn: u8,
 }
 
@@ -28,13 +28,13 @@ pub(super) struct Course {
 
 impl Course {
     pub fn add(&mut self, id: LoopId, column: usize, yarn: u8) {
-        let twice_column = 2 * u32::try_from(column).unwrap_or(u32::MAX / 2);
+        let twice_column = twice(column);
         self.stitches.push(Made { id, twice_column, yarn });
     }
 
     /// Lifts the strand on the left of a place; it is of the yarn that runs there.
     pub fn lift(&mut self, id: LoopId, column: usize, yarn: u8) {
-        let twice_column = (2 * u32::try_from(column).unwrap_or(u32::MAX / 2)).saturating_sub(1);
+        let twice_column = twice(column) - 1;
         let at = self.stitches.partition_point(|made| made.twice_column <= twice_column);
         let near = self.stitches.get(at).or(self.stitches.last());
         let yarn = near.map_or(yarn, |made| made.yarn);
@@ -57,6 +57,11 @@ impl Course {
     }
 }
 
+/// Charts are limited to 16 million loops.
+fn twice(column: usize) -> i32 {
+    2 * i32::try_from(column).unwrap_or(i32::MAX / 4)
+}
+
 /// Places floated over from one loop of a row to the next.
 fn over(from: Made, to: Made) -> u32 {
     (from.twice_column.abs_diff(to.twice_column) / 2).saturating_sub(1)
@@ -66,7 +71,7 @@ fn over(from: Made, to: Made) -> u32 {
 pub(super) fn periodic(courses: &[Course], counts: &[usize]) -> Vec<Strand> {
     let mut strands = Vec::new();
     for (row, course) in courses.iter().enumerate() {
-        let around = 2 * u32::try_from(counts[row + 1]).unwrap_or(u32::MAX / 2);
+        let around = twice(counts[row + 1]);
         for (yarn, loops) in course.by_yarn(true) {
             let (first, last) = (loops[0], loops[loops.len() - 1]);
             let image = Made { twice_column: first.twice_column + around, ..first };
@@ -129,7 +134,8 @@ pub(super) fn finite(graph: &LoopGraph, courses: &[Course], working: Working, co
             for (k, made) in loops.iter().enumerate() {
                 let onward = match loops.get(k + 1) {
                     None => Onward::Edge,
-                    Some(_) if chain => Onward::Chain,
+                    // A strand lifted out of the cast-on is no chain.
+                    Some(next) if chain && (made.twice_column | next.twice_column) & 1 == 0 => Onward::Chain,
                     Some(next) => Onward::Sinker { over: over(*made, *next) },
                 };
                 known.strand.stops.push((Stop::Loop { id: made.id, rightward }, onward));
@@ -159,9 +165,8 @@ fn is_cast_on(graph: &LoopGraph, strand: &Strand) -> bool {
 
 /// Whether a loop is where a row that runs this way begins.
 fn at_edge(made: Made, rightward: bool, count: usize) -> bool {
-    let column = made.twice_column / 2;
-    let last = u32::try_from(count).unwrap_or(u32::MAX).saturating_sub(1);
-    if rightward { column <= EDGE } else { column + EDGE >= last }
+    let last = twice(count) - 2;
+    if rightward { made.twice_column <= 2 * EDGE } else { made.twice_column + 2 * EDGE >= last }
 }
 
 /// Whether a loop is where a row that runs this way ends.
@@ -199,8 +204,9 @@ fn join(
             return true;
         }
         let places = u32::try_from(counts[at(last_row)]).unwrap_or(u32::MAX);
-        let left = last.twice_column / 2;
-        let skipped = (places.saturating_sub(1)).saturating_sub(first.twice_column / 2);
+        let column = |made: Made| u32::try_from(made.twice_column / 2).unwrap_or(0);
+        let left = column(last);
+        let skipped = (places.saturating_sub(1)).saturating_sub(column(first));
         // Once around to where it was is no float but a new end.
         let carried = left + skipped + 1 < places || places == 1;
         if carried {

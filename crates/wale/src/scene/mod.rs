@@ -36,7 +36,7 @@ use std::path::{Path, PathBuf};
 
 pub use error::{ErrorClass, SceneError};
 
-use crate::model::{FabricCard, Plan, YarnCard};
+use crate::model::{FabricCard, Network, Plan, YarnCard};
 use crate::pattern::{Chart, Working};
 use error::{Complaint, nearest};
 use resolve::Failure;
@@ -55,8 +55,8 @@ pub struct Scene {
     pub title: String,
     /// The yarn.
     pub yarn: YarnCard,
-    /// Its colour as sRGB.
-    pub yarn_color: [u8; 3],
+    /// Colours of the chart's yarns as sRGB, at least one.
+    pub yarn_colors: Vec<[u8; 3]>,
     /// The fabric.
     pub fabric: FabricCard,
     /// The stitches.
@@ -77,6 +77,14 @@ pub struct SceneFile {
 }
 
 impl Scene {
+    /// Gives every yarn of the scene's fabric its colour.
+    pub fn color_yarns(&self, network: &mut Network) {
+        let first = self.yarn_colors.first().copied().unwrap_or([0x8a; 3]);
+        for (color, kind) in network.yarn_color.iter_mut().zip(&network.yarn_kind) {
+            *color = self.yarn_colors.get(usize::from(*kind)).copied().unwrap_or(first);
+        }
+    }
+
     /// Reads a scene file.
     ///
     /// # Errors

@@ -91,6 +91,44 @@ fn charts_come_from_symbols_with_a_legend_and_repeat() {
 }
 
 #[test]
+fn stitches_have_the_yarn_and_the_yarns_their_colour() {
+    let yarns = "[yarns.B]\ncolor = \"#ffffff\"\n";
+    let chart = "[fabric.chart]\npattern = \"stockinette\"\ncolumns = 4\nrows = 4\n";
+    let scene = read(&format!("[yarn]\ncolor = \"#102030\"\n{yarns}{chart}stripes = [\"A\", \"B\"]\n"));
+    assert_eq!([0, 1, 2, 3].map(|row| scene.chart.yarn(row, 2)), [0, 1, 0, 1]);
+    assert_eq!(scene.yarn_colors, [[0x10, 0x20, 0x30], [255; 3]]);
+    // The last row comes first, and the grid repeats.
+    let scene = read(&format!("{yarns}{chart}yarns = [\"BBA\", \"ABA\"]\n"));
+    assert_eq!([0, 1, 2, 3].map(|at| scene.chart.yarn(0, at)), [0, 1, 0, 0]);
+    assert_eq!([0, 1, 2, 3].map(|at| scene.chart.yarn(3, at)), [1, 1, 0, 1]);
+    let mut network = crate::pattern::knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    scene.color_yarns(&mut network);
+    assert!(network.yarn_color.contains(&[255; 3]) && network.yarn_color.contains(&scene.yarn_colors[0]));
+}
+
+#[test]
+fn an_image_is_a_chart_of_stitches_or_of_yarns() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = crate::picture::Image { width: 2, height: 2, pixels: vec![[255; 3], [0; 3], [255; 3], [255; 3]] };
+    crate::picture::write_png(&image, std::fs::File::create(folder.path().join("chart.png")).unwrap()).unwrap();
+    let scene_with = |chart: &str| {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, format!("schema = 1\n[fabric.chart]\nimage = \"chart.png\"\n{chart}\n")).unwrap();
+        Scene::read_with_inputs(&path)
+    };
+    let read = scene_with("palette = { \"#ffffff\" = \"k\", \"#000000\" = \"p\" }\ncolumns = 4").unwrap();
+    assert_eq!(format!("{:?}", read.scene.chart), "\nkpkp\nkkkk");
+    assert_eq!(read.inputs.len(), 2);
+    let read = scene_with("palette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }").unwrap();
+    assert_eq!(format!("{:?}", read.scene.chart), "\nkk\nkk");
+    assert_eq!((read.scene.chart.yarn(1, 1), read.scene.chart.yarn(0, 1)), (1, 0));
+    let read = scene_with("pattern = \"garter\"\ncolumns = 3\nrows = 2\npalette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }");
+    assert_eq!(format!("{:?}", read.unwrap().scene.chart), "\nppp\nkkk");
+    let error = scene_with("palette = { \"#ffffff\" = \"A\" }").unwrap_err().to_string();
+    assert!(error.contains("the pixel 2 from the left, 1 from the top is #000000"), "{error}");
+}
+
+#[test]
 fn what_happens_is_read_to_motions() {
     let scene = read(&format!(
         "{CHART}[simulation]\nduration = 2\n\
@@ -185,6 +223,9 @@ fn resolved_again(scene: &Scene) -> Scene {
 fn resolved_scenes_of_every_kind_read_back_the_same() {
     for text in [
         template().to_owned(),
+        "schema = 1\n[fabric.chart]\nsymbols = [\"#kk#\", \"#/k#\", \"x/\", \"kkkk\"]\nlegend = { k = \"k\", x = \"(k, yo, p) in 1 st\", \"/\" = \"cdd\" }\n".to_owned(),
+        "schema = 1\n[yarn]\ncolor = \"#101010\"\n[yarns.B]\ncolor = \"#ffffff\"\n[fabric.chart]\npattern = \"garter\"\ncolumns = 6\nrows = 8\nstripes = [\"A\", \"A\", \"B\", \"B\"]\n".to_owned(),
+        "schema = 1\n[yarns.2]\ncolor = \"#ffffff\"\n[fabric.chart]\npattern = \"stockinette\"\ncolumns = 6\nrows = 8\nyarns = [\"121\", \"112\"]\n".to_owned(),
         format!("schema = 1\n[fabric]\nstance = \"hanging\"\ncenter = [0.1, \"2 mm\", 3]\n{CHART}worked = \"round\"\n"),
         format!(
             "schema = 1\ntitle = \"a \\\"title\\\"\"\n{CHART}[output]\nexports = [\"vtk\", \"usd\", \"vtk\"]\n\

@@ -1,17 +1,18 @@
 //! A scene written out in full, in SI units: reading it back gives the same scene.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use glam::{DQuat, DVec3};
 
 use super::schema::{
     Axes, AxisAngle, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText, KeyText,
-    MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText, SimulationText,
+    MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText, SimulationText,
     SphereText, Worked, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
 use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
-use crate::pattern::symbols::write_symbols;
-use crate::pattern::{Side, Working};
+use crate::pattern::{Chart, Side, Stitch, Working};
 
 /// A number that is out of the bounds of the scene format, in words.
 type Written<T> = Result<T, String>;
@@ -22,6 +23,7 @@ pub(super) fn text_of(scene: &Scene) -> Written<SceneText> {
         schema: SCHEMA,
         title: Some(scene.title.clone()),
         yarn: Some(yarn(scene)?),
+        yarns: other_yarns(scene),
         fabric: fabric(scene)?,
         simulation: Some(simulation(scene)?),
         output: Some(output(scene)?),
@@ -62,7 +64,7 @@ fn yarn(scene: &Scene) -> Written<YarnText> {
         friction: some(card.friction_coefficient)?,
         mass_damping: some(card.mass_damping)?,
         stiffness_damping: some(card.stiffness_damping)?,
-        color: Some(Color(scene.yarn_color)),
+        color: scene.yarn_colors.first().copied().map(Color),
         plies: Some(card.plies),
         twist: some(card.twist)?,
     })
@@ -105,14 +107,46 @@ fn chart(scene: &Scene) -> ChartText {
         Working::Flat { first_row: Side::RightSide } => (Worked::Flat, Some(FirstRow::RightSide)),
         Working::Flat { first_row: Side::WrongSide } => (Worked::Flat, Some(FirstRow::WrongSide)),
     };
+    let repeat = scene.chart.smallest_repeat();
+    let (lines, legend) = spelled(&repeat);
+    let names = |row: &[Stitch], at: usize| (0..row.len()).map(|k| name(repeat.yarn(at, k))).collect();
+    let yarns = repeat.rows().iter().enumerate().rev().map(|(at, row)| names(row, at)).collect();
     ChartText {
-        symbols: Some(write_symbols(&scene.chart.smallest_repeat())),
-        columns: Some(scene.chart.column_count() as u64),
+        symbols: Some(lines),
+        legend: Some(legend),
+        yarns: (scene.yarn_colors.len() > 1).then_some(yarns),
+        columns: Some(scene.chart.cast_on() as u64),
         rows: Some(scene.chart.row_count() as u64),
         worked: Some(worked),
         first_row,
         ..ChartText::default()
     }
+}
+
+/// The lines of a chart, and what their symbols mean: those of charts, and others for increases that have none.
+fn spelled(chart: &Chart) -> (Vec<String>, BTreeMap<String, String>) {
+    let used: BTreeSet<Stitch> = chart.rows().iter().flatten().copied().collect();
+    let taken: BTreeSet<char> = Stitch::all().map(|(_, symbol, _)| symbol).collect();
+    let mut spare = ('0'..='9').chain('A'..='Z').chain('À'..).filter(|c| !taken.contains(c));
+    let symbols: BTreeMap<Stitch, char> = used
+        .into_iter()
+        .map(|stitch| (stitch, if taken.contains(&stitch.symbol()) { stitch.symbol() } else { spare.next().unwrap_or('?') }))
+        .collect();
+    let line = |row: &Vec<Stitch>| row.iter().map(|stitch| symbols[stitch]).collect();
+    let lines = chart.rows().iter().rev().map(line).collect();
+    (lines, symbols.into_iter().map(|(stitch, symbol)| (symbol.to_string(), stitch.to_string())).collect())
+}
+
+/// The letter that stands for a yarn of a chart.
+fn name(yarn: u8) -> char {
+    char::from(b'A' + yarn % 26)
+}
+
+/// The yarns after the first, by their letters.
+fn other_yarns(scene: &Scene) -> BTreeMap<String, OtherYarnText> {
+    let text = |color: &[u8; 3]| OtherYarnText { color: Some(Color(*color)) };
+    let others = scene.yarn_colors.iter().enumerate().skip(1);
+    others.map(|(at, color)| (name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(), text(color))).collect()
 }
 
 fn simulation(scene: &Scene) -> Written<SimulationText> {

@@ -87,6 +87,7 @@ pub fn network(places: Vec<DVec3>, yarns: &[Yarn]) -> Network {
         }
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap());
         network.yarn_closure.push(None);
+        network.yarn_kind.push(0);
         network.yarn_color.push([200, 180, 160]);
     }
     network.chart_place = (0..places.len()).map(|k| [k as f64, 0.0]).collect();

@@ -1,25 +1,26 @@
 //! The stitches of a scene: a pattern by name, symbols, or a file of written instructions.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
-use super::{Failure, exactly_one};
+use super::beside::{path_beside, read_text};
+use super::{Failure, exactly_one, yarns};
 use crate::pattern::instructions::{self, LARGEST_TEXT, read_instructions};
 use crate::pattern::named::{self, NamedPatternError, named_pattern};
 use crate::pattern::symbols::{Legend, default_legend, read_symbols};
-use crate::pattern::{Chart, ChartError, Lean, Side, Stitch, Working};
+use crate::pattern::{Chart, ChartError, Side, Stitch, Working};
 use crate::scene::error::{Complaint, ErrorClass, SceneError, nearest, shortened};
-use crate::scene::schema::{ChartText, FirstRow, StitchName, Worked};
+use crate::scene::schema::{ChartText, FirstRow, Worked};
 
-/// The chart of a scene, how it is worked, and the files it was read from.
+/// The chart of a scene, how it is worked, the names of its yarns, and the files it was read from.
 pub(super) struct Stitches {
     pub chart: Chart,
     pub working: Working,
+    /// By the chart's numbers; empty where none is named.
+    pub yarns: Vec<String>,
     pub inputs: Vec<PathBuf>,
 }
 
-const HERE: &str = "fabric.chart";
+pub(super) const HERE: &str = "fabric.chart";
 
 pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Result<Stitches, Failure> {
     let Some(text) = text else {
@@ -27,23 +28,53 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
             .mend("add [fabric.chart] with pattern = \"garter\", columns = 20 and rows = 20")
             .into());
     };
-    let given =
-        [("pattern", text.pattern.is_some()), ("symbols", text.symbols.is_some()), ("file", text.file.is_some())];
+    // An image may give the yarns of stitches that something else gives.
+    let drawn = yarns::image(text, directory)?;
+    let image_of_stitches = matches!(drawn, Some(yarns::Drawn::Stitches(..)));
+    let plain = matches!(drawn, Some(yarns::Drawn::Yarns(..)))
+        && text.pattern.is_none()
+        && text.symbols.is_none()
+        && text.file.is_none();
+    let given = [
+        ("pattern", text.pattern.is_some() || plain),
+        ("symbols", text.symbols.is_some()),
+        ("image", image_of_stitches),
+        ("file", text.file.is_some()),
+    ];
     exactly_one(HERE, &given)?;
     if text.legend.is_some() && text.symbols.is_none() {
         let complaint = Complaint::new(format!("{HERE}.legend"), "a legend without symbols");
         return Err(complaint.mend("leave the legend out, or draw the chart with symbols").into());
     }
-    let working = working(text)?;
-    if let Some(name) = &text.pattern {
+    let worked = working(text)?;
+    let mut inputs: Vec<PathBuf> = drawn.iter().map(|drawn| drawn.path().to_path_buf()).collect();
+    let (chart, working, named) = if let Some(name) = &text.pattern {
         let chart = sized(&pattern(name)?, text, true)?;
-        return Ok(Stitches { chart, working, inputs: Vec::new() });
-    }
-    if let Some(lines) = &text.symbols {
-        let chart = sized(&symbols(lines, text)?, text, false)?;
-        return Ok(Stitches { chart, working, inputs: Vec::new() });
-    }
-    written(text, text.file.as_deref().unwrap_or_default(), directory)
+        // A pattern of several yarns names them itself, unless the scene does.
+        let says = text.stripes.is_some() || text.yarns.is_some() || text.image.is_some();
+        let count = if says { 1 } else { chart.yarn_count() };
+        let letters = (0..count).filter(|_| count > 1).map(|yarn| char::from(b'A' + yarn as u8).to_string());
+        (chart, worked, letters.collect())
+    } else if let Some(lines) = &text.symbols {
+        (sized(&symbols(lines, text)?, text, false)?, worked, Vec::new())
+    } else if let Some(file) = text.file.as_deref() {
+        let read = written(text, file, directory)?;
+        inputs.extend(read.inputs);
+        (read.chart, read.working, read.yarns)
+    } else {
+        match &drawn {
+            Some(yarns::Drawn::Stitches(_, chart)) => (sized(chart, text, false)?, worked, Vec::new()),
+            // Yarns alone are knitted plain, as large as they are drawn.
+            Some(yarns::Drawn::Yarns(_, grid)) => {
+                let [columns, rows] = [grid[0].len(), grid.len()].map(|n| Some(n as u64));
+                let text = ChartText { columns: text.columns.or(columns), rows: text.rows.or(rows), ..text.clone() };
+                (sized(&Chart::stockinette(), &text, true)?, worked, Vec::new())
+            }
+            None => return Err(Complaint::new(HERE, "the chart has no stitches").into()),
+        }
+    };
+    let (chart, yarns) = yarns::assign(chart, named, text, drawn.as_ref())?;
+    Ok(Stitches { chart, working, yarns, inputs })
 }
 
 fn working(text: &ChartText) -> Result<Working, Complaint> {
@@ -69,8 +100,9 @@ fn pattern(name: &str) -> Result<Chart, Complaint> {
                 _ => None,
             },
         );
-        let near = nearest(name, named::NAMES).map(|near| format!("did you mean \"{near}\"? "));
-        complaint.mend(format!("{}patterns are: {}", near.unwrap_or_default(), named::NAMES.join(", ")))
+        let near = nearest(name, named::names()).map(|near| format!("did you mean \"{near}\"? "));
+        let plain = named::PLAIN.join(", ");
+        complaint.mend(format!("{}patterns are: {plain}, and those that `wale patterns` lists", near.unwrap_or_default()))
     })
 }
 
@@ -94,7 +126,7 @@ fn sized(chart: &Chart, text: &ChartText, required: bool) -> Result<Chart, Compl
             return Err(complaint);
         }
     }
-    let columns = text.columns.unwrap_or(chart.column_count() as u64);
+    let columns = text.columns.unwrap_or(chart.cast_on() as u64);
     let rows = text.rows.unwrap_or(chart.row_count() as u64);
     let key = if text.columns >= text.rows { "columns" } else { "rows" };
     let refused = |error: ChartError| {
@@ -103,25 +135,6 @@ fn sized(chart: &Chart, text: &ChartText, required: bool) -> Result<Chart, Compl
     Chart::check_size(columns, rows).map_err(refused)?;
     // Checked above: both counts are below the limit of loops.
     chart.repeat(columns as usize, rows as usize).map_err(refused)
-}
-
-fn stitch_of(name: StitchName) -> Stitch {
-    let together = |knit, loops, lean| Stitch::Together { knit, loops, lean };
-    match name {
-        StitchName::Knit => Stitch::Knit,
-        StitchName::Purl => Stitch::Purl,
-        StitchName::Yo => Stitch::YarnOver,
-        StitchName::K2tog => together(true, 2, Lean::Right),
-        StitchName::Ssk => together(true, 2, Lean::Left),
-        StitchName::P2tog => together(false, 2, Lean::Right),
-        StitchName::Ssp => together(false, 2, Lean::Left),
-        StitchName::K3tog => together(true, 3, Lean::Right),
-        StitchName::Sssk => together(true, 3, Lean::Left),
-        StitchName::P3tog => together(false, 3, Lean::Right),
-        StitchName::Sssp => together(false, 3, Lean::Left),
-        StitchName::Cdd => together(true, 3, Lean::Centre),
-        StitchName::Cddp => together(false, 3, Lean::Centre),
-    }
 }
 
 fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
@@ -136,7 +149,8 @@ fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
                     let what = format!("\"{}\" is not one symbol", shortened(symbol));
                     return Err(Complaint::new(path, what).why("every stitch of a chart is one character"));
                 };
-                legend.insert(c, stitch_of(*name));
+                let stitch = Stitch::read(name).ok_or_else(|| unknown_stitch(&format!("{HERE}.legend.{symbol}"), name))?;
+                legend.insert(c, stitch);
             }
             legend
         }
@@ -155,10 +169,19 @@ fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
     })
 }
 
+/// A name that is no stitch.
+pub(super) fn unknown_stitch(path: &str, name: &str) -> Complaint {
+    let near = nearest(name, Stitch::all().map(|(name, ..)| name));
+    let near = near.map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default();
+    Complaint::new(path, format!("\"{}\" is no stitch that wale knows", shortened(name)))
+        .mend(format!("{near}stitches are: {}", Stitch::names()))
+}
+
 /// A chart from a file of written instructions.
 fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Stitches, Failure> {
-    let path = path_beside(name, directory)?;
-    let content = read_text(&path, name)?;
+    let key = format!("{HERE}.file");
+    let path = path_beside(&key, name, directory)?;
+    let content = read_text(&path, &key, name, LARGEST_TEXT)?;
     let columns = text.columns.map(|columns| usize::try_from(columns).unwrap_or(usize::MAX));
     let read = read_instructions(&content, columns).map_err(|error| {
         let class = match &error.reason {
@@ -174,9 +197,9 @@ fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Sti
     };
     let chart = read.chart;
     if let Some(columns) = text.columns
-        && columns != chart.column_count() as u64
+        && columns != chart.cast_on() as u64
     {
-        return conflict("columns", format!("the file casts on {}, the scene {columns}", chart.column_count()));
+        return conflict("columns", format!("the file casts on {}, the scene {columns}", chart.cast_on()));
     }
     let round = read.working == Working::Round;
     if text.worked.is_some_and(|worked| (worked == Worked::Round) != round) {
@@ -197,58 +220,5 @@ fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Sti
             .into());
     }
     let chart = sized(&chart, text, false)?;
-    Ok(Stitches { chart, working: read.working, inputs: vec![path] })
-}
-
-/// A file that lies in the scene's folder or below it, links followed.
-fn path_beside(name: &str, directory: Option<&Path>) -> Result<PathBuf, Complaint> {
-    let complain = |what: String| {
-        Complaint::new(format!("{HERE}.file"), what)
-            .why("a chart file lies in the folder of its scene, or below it")
-            .mend("write for instance file = \"rib.knit\"")
-    };
-    let shown = shortened(name);
-    let inside = !name.is_empty()
-        && !name.contains(['\\', ':', '\0'])
-        && Path::new(name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
-    if !inside {
-        return Err(complain(format!("\"{}\" is not a path inside the scene's folder", shown.escape_debug())));
-    }
-    let Some(directory) = directory else {
-        return Err(complain("this scene has no folder to read files from".to_owned()));
-    };
-    // A scene that is given by its bare name lies in the working directory.
-    let directory = if directory.as_os_str().is_empty() { Path::new(".") } else { directory };
-    let path = directory.join(name);
-    let unreadable = |error: &std::io::Error| unreadable(&shown, error);
-    let real = path.canonicalize().map_err(|error| unreadable(&error))?;
-    let folder = directory.canonicalize().map_err(|error| unreadable(&error))?;
-    if !real.starts_with(&folder) {
-        return Err(complain(format!("\"{shown}\" leads out of the scene's folder")));
-    }
-    if !real.is_file() {
-        return Err(complain(format!("\"{shown}\" is no file")));
-    }
-    Ok(path)
-}
-
-fn unreadable(name: &str, error: &std::io::Error) -> Complaint {
-    let complaint = Complaint::new(format!("{HERE}.file"), format!("\"{name}\" cannot be read: {error}"));
-    match error.kind() {
-        std::io::ErrorKind::NotFound => complaint.mend("check the name; it is relative to the scene's folder"),
-        _ => complaint.class(ErrorClass::InputOutput),
-    }
-}
-
-/// The text of a file, no more than is allowed of it.
-fn read_text(path: &Path, name: &str) -> Result<String, Complaint> {
-    let mut bytes = Vec::new();
-    let limit = LARGEST_TEXT as u64 + 1;
-    File::open(path)
-        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
-        .map_err(|error| unreadable(&shortened(name), &error))?;
-    String::from_utf8(bytes).map_err(|_| {
-        let what = format!("\"{}\" is not text in UTF-8", shortened(name));
-        Complaint::new(format!("{HERE}.file"), what)
-    })
+    Ok(Stitches { chart, working: read.working, yarns: read.yarns, inputs: vec![path] })
 }

@@ -1,10 +1,12 @@
 //! From what a scene file says to plain SI numbers: presets, defaults, and every check that needs more than one value.
 
+mod beside;
 mod chart;
 mod fabric;
 mod happening;
 mod plan;
 mod yarn;
+mod yarns;
 
 use std::path::{Path, PathBuf};
 
@@ -50,7 +52,8 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     let grips = happening::grips(&text.grip, simulation.duration, placement.center, size)?;
     let plan = Plan { placement, simulation, obstacles, grips, output };
     let title = text.title.clone().unwrap_or_default();
-    let scene = Scene { title, yarn, yarn_color, fabric, chart: stitches.chart, working: stitches.working, plan };
+    let yarn_colors = yarns::colors(&stitches.yarns, yarn_color, &text.yarns)?;
+    let scene = Scene { title, yarn, yarn_colors, fabric, chart: stitches.chart, working: stitches.working, plan };
     Ok((scene, stitches.inputs))
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// The stitches: one of pattern, symbols and file.
+/// The stitches: one of pattern, symbols, image and file; and the yarns they are made of.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Chart")]
@@ -15,12 +15,25 @@ pub struct ChartText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
     /// Rows of symbols as charts are printed, the last row first, each from left to right as seen from the front.
-    /// `k K | □` are knit and `p P - • .` purl, seen from the front in every row.
+    /// `k K | □` are knit and `p P - • .` purl, `o` a yarn-over, `/ \\` k2tog and ssk, and so on; `#` is no stitch.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub symbols: Option<Vec<String>>,
-    /// Symbols of your own: `{ "x" = "knit", "o" = "yo", "/" = "k2tog" }`.
+    /// Symbols of your own by the names of stitches as seen from the front: `{ "x" = "knit", "o" = "yo", "/" = "k2tog" }`;
+    /// several loops out of one are "(k, yo, k) in 1 st".
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub legend: Option<BTreeMap<String, StitchName>>,
+    pub legend: Option<BTreeMap<String, String>>,
+    /// A PNG beside the scene, one pixel a stitch, its lowest line the first row; palette says what its colours mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub image: Option<String>,
+    /// What each colour of the image is, either all yarns or all stitches: `{ "#ffffff" = "A", "#c03020" = "B" }`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub palette: Option<BTreeMap<String, String>>,
+    /// The yarn of each row from the cast-on, repeated: `["A", "A", "B", "B"]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stripes: Option<Vec<String>>,
+    /// The yarn of each stitch as rows of single characters, the last row first, repeated over the fabric.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yarns: Option<Vec<String>>,
     /// A file of written row instructions beside the scene, as in "rib.knit".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
@@ -36,38 +49,6 @@ pub struct ChartText {
     /// The side that faces the knitter in the first row of a flat fabric; the right side if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_row: Option<FirstRow>,
-}
-
-/// A stitch by name, as seen from the front.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum StitchName {
-    /// A knit.
-    Knit,
-    /// A purl.
-    Purl,
-    /// A yarn-over.
-    Yo,
-    /// Two loops knitted together, the left one in front.
-    K2tog,
-    /// Two loops knitted together, the right one in front.
-    Ssk,
-    /// Two loops purled together, the left one in front.
-    P2tog,
-    /// Two loops purled together, the right one in front.
-    Ssp,
-    /// Three loops knitted together, the left one in front.
-    K3tog,
-    /// Three loops knitted together, the right one in front.
-    Sssk,
-    /// Three loops purled together, the left one in front.
-    P3tog,
-    /// Three loops purled together, the right one in front.
-    Sssp,
-    /// Three loops knitted together, the middle one in front.
-    Cdd,
-    /// Three loops purled together, the middle one in front.
-    Cddp,
 }
 
 /// How rows follow each other.

@@ -9,17 +9,19 @@ mod happening;
 mod simulation;
 mod yarn;
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use chart::{ChartText, FirstRow, StitchName, Worked};
+pub use chart::{ChartText, FirstRow, Worked};
 pub use fabric::{AxisAngle, FabricText, PaperTable1, Stance};
 pub use happening::{
     Axes, BoxText, CapsuleText, Corner, GripText, KeyText, MotionText, ObstacleText, PlaneText, PullText, RegionText,
     SelectText, SphereText, TurnText,
 };
 pub use simulation::{Gravity, OutputText, SimulationText};
-pub use yarn::{Color, PresetName, YarnText};
+pub use yarn::{Color, OtherYarnText, PresetName, YarnText};
 
 use super::dimensions::{Force, Length, Ratio, Speed};
 use super::units::Quantity;
@@ -49,6 +51,9 @@ pub struct SceneText {
     /// The yarn; a worsted wool if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub yarn: Option<YarnText>,
+    /// Other yarns by the names that the chart gives them; a name that is not here is that of the yarn above.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub yarns: BTreeMap<String, OtherYarnText>,
     /// The fabric, with its chart. Required.
     pub fabric: FabricText,
     /// Time, forces from outside, and the solver.

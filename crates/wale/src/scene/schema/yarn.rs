@@ -75,6 +75,16 @@ pub struct YarnText {
     pub twist: Option<Quantity<Twist>>,
 }
 
+/// What another yarn of the fabric has of its own; in all else it is like the first.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "OtherYarn")]
+pub struct OtherYarnText {
+    /// Its colour: "#8a3324".
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<Color>,
+}
+
 /// An sRGB colour, written `"#rrggbb"`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Color(pub [u8; 3]);

@@ -37,7 +37,7 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
         ("schema = 1\n[fabric]\n", "fabric", "no chart", "[fabric.chart]", Input),
         ("schema = 1\nschema = 1\n", "schema", "duplicate key", "", Input),
         ("schema = \n", "", "", "", Input),
-        ("schema = 1\n[fabric.chart]\n", "chart", "none of pattern, symbols, file", "", Input),
+        ("schema = 1\n[fabric.chart]\n", "chart", "none of pattern, symbols, image, file", "", Input),
         (
             "schema = 1\n[fabric.chart]\npattern = \"gartr\"\n",
             "\"gartr\"",
@@ -66,7 +66,7 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
         (
             "schema = 1\n[fabric.chart]\nsymbols = [\"kkk\", \"kk\"]\n",
             "\"kkk\"",
-            "row 2 of the chart has 3 stitches, row 1 (the lowest) has 2",
+            "row 2 works 3 stitches, but the row below it leaves 2",
             "",
             Input,
         ),
@@ -79,10 +79,38 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
             Input,
         ),
         (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"xx\"]\nlegend = { x = \"k2to\" }\n",
+            "\"k2to\"",
+            "no stitch that wale knows",
+            "did you mean \"k2tog\"",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"kk\"]\nimage = \"a.png\"\n",
+            "\"a.png\"",
+            "an image without a palette",
+            "palette = {",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"kk\"]\nstripes = [\"A\"]\nyarns = [\"A\"]\n",
+            "[\"A\"]",
+            "stripes and yarns both give the yarns",
+            "keep one",
+            Input,
+        ),
+        (
+            "schema = 1\n[yarns.C]\ncolor = \"#ffffff\"\n[fabric.chart]\nsymbols = [\"kk\"]\nstripes = [\"A\", \"B\"]\n",
+            "C",
+            "the chart has no yarn \"C\"",
+            "",
+            Input,
+        ),
+        (
             "schema = 1\n[fabric.chart]\npattern = \"seed\"\nsymbols = [\"k\"]\n",
             "[\"k\"]",
             "both given",
-            "keep one of pattern, symbols, file",
+            "keep one of pattern, symbols, image, file",
             Input,
         ),
         (

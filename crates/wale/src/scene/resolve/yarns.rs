@@ -1,0 +1,159 @@
+//! Which yarn each stitch is of: stripes, a grid of names, or an image.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::Failure;
+use super::beside::{path_beside, read_bytes};
+use super::chart::{HERE, unknown_stitch};
+use crate::pattern::image::{self, LARGEST_IMAGE, Pixels};
+use crate::pattern::instructions::MOST_YARNS;
+use crate::pattern::{Chart, Stitch};
+use crate::scene::error::{Complaint, ErrorClass, nearest, shortened};
+use crate::scene::schema::{ChartText, OtherYarnText};
+
+/// What an image draws, the lowest row first.
+pub(super) enum Drawn {
+    Stitches(PathBuf, Chart),
+    Yarns(PathBuf, Vec<Vec<String>>),
+}
+
+impl Drawn {
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Stitches(path, _) | Self::Yarns(path, _) => path,
+        }
+    }
+}
+
+/// Reads the image of a chart, if it has one.
+pub(super) fn image(text: &ChartText, directory: Option<&Path>) -> Result<Option<Drawn>, Failure> {
+    let Some(name) = &text.image else {
+        return match &text.palette {
+            None => Ok(None),
+            Some(_) => Err(Complaint::new(format!("{HERE}.palette"), "a palette without an image").into()),
+        };
+    };
+    let key = format!("{HERE}.image");
+    let Some(palette) = &text.palette else {
+        return Err(Complaint::new(key, "an image without a palette")
+            .mend("say what its colours are: palette = { \"#ffffff\" = \"A\", \"#c03020\" = \"B\" }")
+            .into());
+    };
+    let path = path_beside(&key, name, directory)?;
+    let bytes = read_bytes(&path, &key, name, LARGEST_IMAGE)?;
+    let pixels = image::read_pixels(&bytes).map_err(|error| {
+        let class = if error.is_size() { ErrorClass::ResourceLimit } else { ErrorClass::BadInput };
+        Complaint::new(key.as_str(), format!("\"{}\": {error}", shortened(name))).class(class)
+    })?;
+    let mut meaning = BTreeMap::new();
+    for (color, name) in palette {
+        let rgb = image::color(color).ok_or_else(|| {
+            Complaint::new(format!("{HERE}.palette.{color}"), format!("`{}` is no colour", shortened(color)))
+                .mend("write six hexadecimal digits, as in \"#8a3324\"")
+        })?;
+        meaning.insert(rgb, name.as_str());
+    }
+    let grid = names(&pixels, &meaning)?;
+    if meaning.values().all(|name| Stitch::read(name).is_none()) {
+        return Ok(Some(Drawn::Yarns(path, grid.into_iter().map(|row| row.into_iter().map(str::to_owned).collect()).collect())));
+    }
+    let stitch = |name: &str| {
+        let color = palette.iter().find(|(_, known)| *known == name).map_or("", |(color, _)| color);
+        Stitch::read(name).ok_or_else(|| unknown_stitch(&format!("{HERE}.palette.{color}"), name))
+    };
+    let rows: Result<Vec<Vec<Stitch>>, Complaint> =
+        grid.into_iter().map(|row| row.into_iter().map(stitch).collect()).collect();
+    let chart = Chart::new(rows?).map_err(|error| Complaint::new(key.as_str(), error.to_string()))?;
+    Ok(Some(Drawn::Stitches(path, chart)))
+}
+
+/// What the palette calls each pixel, the lowest row first.
+fn names<'a>(pixels: &Pixels, meaning: &BTreeMap<[u8; 3], &'a str>) -> Result<Vec<Vec<&'a str>>, Complaint> {
+    let mut rows = Vec::with_capacity(pixels.height);
+    for (line, row) in pixels.colors.chunks(pixels.width).enumerate().rev() {
+        let mut found = Vec::with_capacity(pixels.width);
+        for (at, color) in row.iter().enumerate() {
+            let [r, g, b] = color;
+            found.push(*meaning.get(color).ok_or_else(|| {
+                let what = format!("the pixel {} from the left, {} from the top is #{r:02x}{g:02x}{b:02x}", at + 1, line + 1);
+                Complaint::new(format!("{HERE}.palette"), what)
+                    .why("the palette does not have this colour")
+                    .mend(format!("add \"#{r:02x}{g:02x}{b:02x}\" to it, or save the image without smoothing"))
+            })?);
+        }
+        rows.push(found);
+    }
+    Ok(rows)
+}
+
+/// The chart with the yarns that the scene gives its stitches, and the names of the yarns.
+pub(super) fn assign(
+    chart: Chart,
+    named: Vec<String>,
+    text: &ChartText,
+    drawn: Option<&Drawn>,
+) -> Result<(Chart, Vec<String>), Complaint> {
+    let grid = match drawn {
+        Some(Drawn::Yarns(_, grid)) => Some(("image", grid.clone())),
+        _ => None,
+    };
+    let characters = |line: &String| line.chars().filter(|c| !c.is_whitespace()).map(String::from).collect();
+    let given: Vec<(&str, Vec<Vec<String>>)> = [
+        text.stripes.as_ref().map(|rows| ("stripes", rows.iter().map(|name| vec![name.clone()]).collect())),
+        text.yarns.as_ref().map(|lines| ("yarns", lines.iter().rev().map(characters).collect())),
+        grid,
+        (!named.is_empty()).then(|| ("file", Vec::new())),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if let [(first, _), (second, _), ..] = given.as_slice() {
+        let complaint = Complaint::new(format!("{HERE}.{second}"), format!("{first} and {second} both give the yarns"));
+        return Err(complaint.mend("keep one of them"));
+    }
+    let Some((key, grid)) = given.into_iter().next().filter(|(key, _)| *key != "file") else {
+        return Ok((chart, named));
+    };
+    let key = format!("{HERE}.{key}");
+    if grid.is_empty() || grid.iter().any(Vec::is_empty) {
+        return Err(Complaint::new(key, "a row without a yarn"));
+    }
+    let mut names: Vec<String> = grid.iter().flatten().cloned().collect();
+    names.sort();
+    names.dedup();
+    if names.len() > MOST_YARNS {
+        return Err(Complaint::new(key, format!("{} yarns", names.len())).why(format!("at most {MOST_YARNS} can be told apart")));
+    }
+    let number = |name: &String| names.iter().position(|known| known == name).unwrap_or(0) as u8;
+    let grid: Vec<Vec<u8>> = grid.iter().map(|row| row.iter().map(number).collect()).collect();
+    let yarns = chart.rows().iter().zip(grid.iter().cycle()).map(|(row, yarns)| {
+        yarns.iter().copied().cycle().take(row.len()).collect()
+    });
+    let yarns = yarns.collect();
+    let chart = chart.with_yarns(yarns).map_err(|error| Complaint::new(key, error.to_string()))?;
+    Ok((chart, names))
+}
+
+/// The colours of the chart's yarns: their own, or that of the scene's yarn.
+pub(super) fn colors(
+    names: &[String],
+    first: [u8; 3],
+    others: &BTreeMap<String, OtherYarnText>,
+) -> Result<Vec<[u8; 3]>, Complaint> {
+    for other in others.keys() {
+        if !names.contains(other) {
+            let near = nearest(other, names.iter().map(String::as_str));
+            let complaint = Complaint::new(format!("yarns.{other}"), format!("the chart has no yarn \"{}\"", shortened(other)));
+            return Err(match near {
+                Some(near) => complaint.mend(format!("did you mean \"{near}\"?")),
+                None => complaint.mend("name it in stripes, yarns, palette or the chart's file, or leave it out"),
+            });
+        }
+    }
+    if names.is_empty() {
+        return Ok(vec![first]);
+    }
+    let color = |name: &String| others.get(name).and_then(|other| other.color).map_or(first, |color| color.0);
+    Ok(names.iter().map(color).collect())
+}
