@@ -36,7 +36,7 @@ impl OpenedScene {
     /// Rows and columns of the chart.
     #[must_use]
     pub fn chart_size(&self) -> [u64; 2] {
-        [self.scene.chart.row_count() as u64, self.scene.chart.column_count() as u64]
+        self.scene.structure.size().map(|n| n as u64)
     }
 
     /// The scene with every default written out.
@@ -71,8 +71,8 @@ impl OpenedScene {
     /// The fabric before it is placed, and what rest-shape compensation did to it.
     #[must_use]
     pub fn start(&self) -> Start {
-        let Scene { chart, working, yarn, fabric, plan, .. } = &self.scene;
-        let mut start = Start::new(chart, *working, yarn, fabric, plan.simulation.rest_shape_compensation);
+        let Scene { structure, yarn, fabric, plan, .. } = &self.scene;
+        let mut start = Start::new(structure, yarn, fabric, plan.simulation.rest_shape_compensation);
         self.scene.color_yarns(&mut start.network);
         start
     }
@@ -94,7 +94,7 @@ impl OpenedScene {
 
 /// The fabric of a scene as its chart lays it out, in its colour.
 fn plain_network(scene: &Scene) -> Network {
-    let mut network = knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    let mut network = scene.structure.network(&scene.fabric);
     scene.color_yarns(&mut network);
     network
 }

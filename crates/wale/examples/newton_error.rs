@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 fn run(path: &str, until: f64) -> Result<(), Box<dyn std::error::Error>> {
     let text = std::fs::read_to_string(path)?;
     let scene = Scene::from_text(&text, path)?;
-    let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, true);
+    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
     let simulation = |iterations: Option<u32>, solver: LinearSolver, tolerance: f64| {
         let mut plan = scene.plan.clone();
         if let Some(iterations) = iterations {

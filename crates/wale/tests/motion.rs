@@ -15,7 +15,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn simulation(scene: &Scene) -> Simulation {
-    let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, true);
+    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
     Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone())
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 use wale::dynamics::system::System;
 use wale::model::{FabricCard, LoopProportions, Network, NodeId, SegmentKind, YarnCard, YarnId};
-use wale::pattern::loops::{Form, LoopGraph, Onward, Stop};
+use wale::pattern::loops::{Form, Form2d, LoopGraph, Onward, Stop};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::work::{work, work_tile};
 use wale::pattern::{Chart, Side, Stitch, Working, knit};
@@ -111,6 +111,15 @@ fn check_network(graph: &LoopGraph, network: &Network) {
         let kinds = &network.segment_kind[network.yarn_passes(YarnId::new(y))];
         // A segment of a stitch contact is never next to another of the same contact.
         assert!(!kinds.windows(2).any(|pair| pair == [SegmentKind::Stitch; 2]));
+    }
+    // Nowhere does a yarn lie folded in two.
+    for y in 0..network.yarn_count() {
+        let passes = network.yarn_passes(YarnId::new(y));
+        for p in passes.start + 1..passes.end - 1 {
+            let [a, b, c] = [p - 1, p, p + 1].map(|p| network.pass_node[p]);
+            // A tube may come down to a single stitch, which is its own neighbour.
+            assert!(a != c || graph.form != Form2d::Sheet, "folded at {:?}", network.chart_place[b.index()]);
+        }
     }
     // The nodes of every loop hold it and the loops that it is drawn through, front to back as the graph says.
     let worked: Vec<_> = graph.loops.iter().filter(|of| matches!(of.form, Form::Worked { .. })).collect();

@@ -10,7 +10,7 @@ fn garter(side: u32, settings: &str) -> Simulation {
          [simulation]\nrelax_first = false\n{settings}\n[[obstacle]]\nsphere = {{ center = [0, 0, 0], radius = 0.02 }}\n"
     );
     let scene = Scene::from_text(&text, "test").unwrap();
-    let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, true);
+    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
     Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan)
 }
 

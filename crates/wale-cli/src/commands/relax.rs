@@ -17,7 +17,16 @@ const MOST_LOOPS: usize = 400;
 pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     let opened = OpenedScene::read(&arguments.scene)?;
     let (yarn, card) = (&opened.scene.yarn, &opened.scene.fabric);
-    let repeat = opened.scene.chart.smallest_repeat();
+    let Some(chart) = opened.scene.structure.chart() else {
+        return Err(Failure::new(
+            Code::BadInput,
+            format_args!(
+                "{}: a machine's program has no repeat to relax; set relax_first in its scene",
+                arguments.scene.display()
+            ),
+        ));
+    };
+    let repeat = chart.smallest_repeat();
     let loops = repeat.loop_count();
     if loops > MOST_LOOPS {
         return Err(Failure::new(

@@ -138,7 +138,9 @@ impl<'a> Builder<'a> {
                 Form::Worked { .. } => {
                     let middle = self.middle(of);
                     for corner in 0..4 {
-                        self.add_node(self.layout.corner(middle, corner, self.share(of)));
+                        let mut place = self.layout.corner(middle, corner, self.share(of));
+                        place.position += place.front * (of.depth * self.card.wale_spacing);
+                        self.add_node(place);
                     }
                 }
                 Form::Open | Form::Lifted => {}
@@ -292,6 +294,11 @@ impl<'a> Builder<'a> {
                 Stop::Loop { id, rightward } => (id, rightward),
                 Stop::Beside { row, offset, right } => {
                     let node = self.add_node(self.layout.beside(row, offset, right));
+                    path.push(fixed(node));
+                    continue;
+                }
+                Stop::At { place, depth } => {
+                    let node = self.add_node(self.layout.at(place, depth));
                     path.push(fixed(node));
                     continue;
                 }

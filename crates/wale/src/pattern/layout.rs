@@ -78,6 +78,13 @@ impl Layout {
         self.place(column + x, row)
     }
 
+    /// A turn or a tail, so many columns in front of the middle.
+    pub fn at(&self, [column, row]: [f64; 2], depth: f64) -> Place {
+        let mut place = self.place(column, row);
+        place.position += place.front * (depth * self.wale_spacing);
+        place
+    }
+
     /// The tail of a yarn that begins or ends there, behind the fabric.
     pub fn behind(&self, [column, row]: [f64; 2]) -> Place {
         let mut place = self.place(column, row - CONTACT);

@@ -59,12 +59,16 @@ pub struct Loop {
     pub column: u32,
     /// Where it lies in the plain layout: columns from the left, rows from the cast-on \[–\].
     pub place: [f64; 2],
+    /// How far in front of the middle of the fabric it lies in that layout, in columns.
+    pub depth: f64,
     /// The loops that it is drawn through, front to back.
     pub parents: Vec<Held>,
     /// The loops drawn through it, from the left.
     pub children: Vec<Held>,
     /// The place of the bind-off that holds it.
     pub bound: Option<u32>,
+    /// Line of the program that made it; 0 of a chart.
+    pub source: u32,
 }
 
 /// What lies between one place of a yarn and the next.
@@ -99,6 +103,13 @@ pub enum Stop {
         offset: f64,
         /// At the right edge.
         right: bool,
+    },
+    /// Beside a loop: a turn or a tail of a machine's carrier.
+    At {
+        /// Columns from the left, rows from the cast-on.
+        place: [f64; 2],
+        /// Columns in front of the middle.
+        depth: f64,
     },
     /// Behind the fabric at a place: the tail of a yarn that begins or ends within a row.
     Behind {

@@ -1,6 +1,6 @@
 //! Along which loops each yarn of a chart runs, from its first end to its last.
 
-use super::loops::{LoopGraph, LoopId, Onward, Stop, Strand};
+use super::loops::{Form, LoopGraph, LoopId, Onward, Stop, Strand};
 use super::working::Working;
 
 /// Columns from an edge within which a yarn turns there; farther inside it goes straight up to its next row.
@@ -217,7 +217,12 @@ fn join(
     let turns = last_rightward != rightward
         && ends_at_edge(last, last_rightward, counts[at(last_row)])
         && at_edge(first, rightward, counts[at(row)]);
+    // The last nodes of a yarn-over are its child's: straight back to that child, the yarn would fold in two.
+    let over = matches!(graph.of(last.id).form, Form::Open | Form::Lifted);
     if turns {
+        if over {
+            open.strand.stops.push((Stop::Beside { row: last_row, offset: -0.2, right: last_rightward }, Onward::Edge));
+        }
         open.strand.stops.push((Stop::Beside { row, offset: -0.7, right: last_rightward }, Onward::Edge));
         return true;
     }
@@ -227,6 +232,9 @@ fn join(
     let apart = if round { apart.min(columns - apart) } else { apart };
     let carried = apart <= CARRIED_COLUMNS && row - last_row <= CARRIED_ROWS;
     if carried {
+        if over {
+            open.strand.stops.push((Stop::Behind { place: [a[0] + 0.5, a[1]] }, Onward::Edge));
+        }
         let way = Stop::Behind { place: [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])] };
         open.strand.stops.push((way, Onward::Edge));
     }

@@ -118,7 +118,7 @@ impl<'a> Worker<'a> {
         let id = LoopId::new(self.graph.loops.len());
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         let place = [f64::from(column) + 0.5, f64::from(row)];
-        self.graph.loops.push(Loop { form, row, column, place, parents, children: Vec::new(), bound: None });
+        self.graph.loops.push(Loop { form, row, column, place, depth: 0.0, parents, children: Vec::new(), bound: None, source: 0 });
         id
     }
 

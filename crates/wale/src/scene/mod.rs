@@ -11,7 +11,7 @@
 //!     rows = 20
 //! ";
 //! let scene = Scene::from_text(text, "rib.toml")?;
-//! assert_eq!(scene.chart.loop_count(), 400);
+//! assert_eq!(scene.structure.size(), [20, 20]);
 //!
 //! let error = Scene::from_text("schema = 1\n[fabric]\nloop_length = \"-3 mm\"\n", "bad.toml").unwrap_err();
 //! assert_eq!(error.to_string(), "bad.toml:3:15: a length must be positive here, not \"-3 mm\"");
@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 pub use error::{ErrorClass, SceneError};
 
 use crate::model::{FabricCard, Network, Plan, YarnCard};
-use crate::pattern::{Chart, Working};
+use crate::pattern::Structure;
 use error::{Complaint, nearest};
 use resolve::Failure;
 use schema::{PresetName, SceneText};
@@ -59,10 +59,8 @@ pub struct Scene {
     pub yarn_colors: Vec<[u8; 3]>,
     /// The fabric.
     pub fabric: FabricCard,
-    /// The stitches.
-    pub chart: Chart,
-    /// How they are worked.
-    pub working: Working,
+    /// The stitches and how they are worked.
+    pub structure: Structure,
     /// What happens, and what is written.
     pub plan: Plan,
 }

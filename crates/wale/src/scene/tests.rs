@@ -4,12 +4,23 @@ mod refusals;
 
 use super::*;
 use crate::model::{Drive, Edge, Selection, Shape};
-use crate::pattern::Side;
+use crate::pattern::{Chart, Side, Structure, Working};
 use glam::DVec3;
 use miette::Diagnostic;
 use proptest::prelude::*;
 
 const CHART: &str = "[fabric.chart]\npattern = \"garter\"\ncolumns = 6\nrows = 4\n";
+
+fn chart_of(scene: &Scene) -> &Chart {
+    scene.structure.chart().unwrap()
+}
+
+fn working_of(scene: &Scene) -> Working {
+    match scene.structure {
+        Structure::Chart { working, .. } => working,
+        Structure::Machine(_) => panic!("a machine's program"),
+    }
+}
 
 fn read(rest: &str) -> Scene {
     Scene::from_text(&format!("schema = 1\n{rest}"), "scene.toml").unwrap_or_else(|error| panic!("{error}"))
@@ -18,8 +29,8 @@ fn read(rest: &str) -> Scene {
 #[test]
 fn five_lines_are_a_scene() {
     let scene = read(CHART);
-    assert_eq!((scene.chart.column_count(), scene.chart.row_count()), (6, 4));
-    assert_eq!(scene.working, Working::default());
+    assert_eq!(scene.structure.size(), [4, 6]);
+    assert_eq!(working_of(&scene), Working::default());
     assert_eq!(scene.yarn.linear_density, 500e-6);
     // The fabric card follows from yarn and loop length in the default proportions.
     let proportions = crate::model::LoopProportions::default();
@@ -84,10 +95,10 @@ fn charts_come_from_symbols_with_a_legend_and_repeat() {
     let scene = read(
         "[fabric.chart]\nsymbols = [\"ox\", \"xx\"]\nlegend = { x = \"knit\", o = \"purl\" }\ncolumns = 3\nworked = \"round\"\n",
     );
-    assert_eq!(format!("{:?}", scene.chart), "\npkp\nkkk");
-    assert_eq!(scene.working, Working::Round);
+    assert_eq!(format!("{:?}", chart_of(&scene)), "\npkp\nkkk");
+    assert_eq!(working_of(&scene), Working::Round);
     let scene = read(&format!("{CHART}first_row = \"wrong_side\"\n"));
-    assert_eq!(scene.working, Working::Flat { first_row: Side::WrongSide });
+    assert_eq!(working_of(&scene), Working::Flat { first_row: Side::WrongSide });
 }
 
 #[test]
@@ -95,13 +106,13 @@ fn stitches_have_the_yarn_and_the_yarns_their_colour() {
     let yarns = "[yarns.B]\ncolor = \"#ffffff\"\n";
     let chart = "[fabric.chart]\npattern = \"stockinette\"\ncolumns = 4\nrows = 4\n";
     let scene = read(&format!("[yarn]\ncolor = \"#102030\"\n{yarns}{chart}stripes = [\"A\", \"B\"]\n"));
-    assert_eq!([0, 1, 2, 3].map(|row| scene.chart.yarn(row, 2)), [0, 1, 0, 1]);
+    assert_eq!([0, 1, 2, 3].map(|row| chart_of(&scene).yarn(row, 2)), [0, 1, 0, 1]);
     assert_eq!(scene.yarn_colors, [[0x10, 0x20, 0x30], [255; 3]]);
     // The last row comes first, and the grid repeats.
     let scene = read(&format!("{yarns}{chart}yarns = [\"BBA\", \"ABA\"]\n"));
-    assert_eq!([0, 1, 2, 3].map(|at| scene.chart.yarn(0, at)), [0, 1, 0, 0]);
-    assert_eq!([0, 1, 2, 3].map(|at| scene.chart.yarn(3, at)), [1, 1, 0, 1]);
-    let mut network = crate::pattern::knit::fabric(&scene.chart, scene.working, &scene.fabric);
+    assert_eq!([0, 1, 2, 3].map(|at| chart_of(&scene).yarn(0, at)), [0, 1, 0, 0]);
+    assert_eq!([0, 1, 2, 3].map(|at| chart_of(&scene).yarn(3, at)), [1, 1, 0, 1]);
+    let mut network = scene.structure.network(&scene.fabric);
     scene.color_yarns(&mut network);
     assert!(network.yarn_color.contains(&[255; 3]) && network.yarn_color.contains(&scene.yarn_colors[0]));
 }
@@ -117,15 +128,37 @@ fn an_image_is_a_chart_of_stitches_or_of_yarns() {
         Scene::read_with_inputs(&path)
     };
     let read = scene_with("palette = { \"#ffffff\" = \"k\", \"#000000\" = \"p\" }\ncolumns = 4").unwrap();
-    assert_eq!(format!("{:?}", read.scene.chart), "\nkpkp\nkkkk");
+    assert_eq!(format!("{:?}", chart_of(&read.scene)), "\nkpkp\nkkkk");
     assert_eq!(read.inputs.len(), 2);
     let read = scene_with("palette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }").unwrap();
-    assert_eq!(format!("{:?}", read.scene.chart), "\nkk\nkk");
-    assert_eq!((read.scene.chart.yarn(1, 1), read.scene.chart.yarn(0, 1)), (1, 0));
+    assert_eq!(format!("{:?}", chart_of(&read.scene)), "\nkk\nkk");
+    assert_eq!((chart_of(&read.scene).yarn(1, 1), chart_of(&read.scene).yarn(0, 1)), (1, 0));
     let read = scene_with("pattern = \"garter\"\ncolumns = 3\nrows = 2\npalette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }");
-    assert_eq!(format!("{:?}", read.unwrap().scene.chart), "\nppp\nkkk");
+    assert_eq!(format!("{:?}", chart_of(&read.unwrap().scene)), "\nppp\nkkk");
     let error = scene_with("palette = { \"#ffffff\" = \"A\" }").unwrap_err().to_string();
     assert!(error.contains("the pixel 2 from the left, 1 from the top is #000000"), "{error}");
+}
+
+#[test]
+fn a_machines_program_is_a_fabric() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = ";!knitout-2\n;;Carriers: 1 2\nin 1\ntuck - f2 1\ntuck - f1 1\nin 2\nknit + f1 2\nknit + f2 2\nout 1\nout 2\n";
+    std::fs::write(folder.path().join("two.k"), program).unwrap();
+    let scene_with = |chart: &str| {
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, format!("schema = 1\n[yarns.2]\ncolor = \"#ffffff\"\n[fabric.chart]\n{chart}\n")).unwrap();
+        Scene::read_with_inputs(&path)
+    };
+    let read = scene_with("file = \"two.k\"").unwrap();
+    assert_eq!((read.scene.structure.size(), read.scene.structure.yarn_count(), read.inputs.len()), ([2, 2], 2, 2));
+    assert_eq!(read.scene.yarn_colors[1], [255; 3]);
+    assert_eq!(resolved_again(&read.scene), read.scene, "the program goes along");
+    let error = scene_with("file = \"two.k\"\ncolumns = 3").unwrap_err().to_string();
+    assert!(error.contains("columns beside a program"), "{error}");
+    std::fs::write(folder.path().join("two.k"), program.replace("in 2\n", "")).unwrap();
+    let error = scene_with("file = \"two.k\"").unwrap_err();
+    assert!(error.to_string().contains("line 6: carrier 2 makes a loop but was not brought in"), "{error}");
+    assert!(error.to_string().contains("two.k"), "{error}");
 }
 
 #[test]
@@ -166,8 +199,8 @@ fn chart_files_are_read_from_the_scenes_folder_only() {
     };
     std::fs::write(inner.join("rib.knit"), "Cast on 4\nRnd 1: *k1, p1*\n").unwrap();
     let read = scene_with("file = \"rib.knit\"\nrows = 3").unwrap();
-    assert_eq!(format!("{:?}", read.scene.chart), "\npkpk\npkpk\npkpk");
-    assert_eq!(read.scene.working, Working::Round);
+    assert_eq!(format!("{:?}", chart_of(&read.scene)), "\npkpk\npkpk\npkpk");
+    assert_eq!(working_of(&read.scene), Working::Round);
     assert_eq!(read.inputs.len(), 2);
 
     std::fs::write(inner.join("bad.knit"), "Cast on 5\n# a rib\nRow 1: k1, *k1, p1, k1*\n").unwrap();

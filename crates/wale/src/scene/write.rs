@@ -12,7 +12,7 @@ use super::schema::{
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
 use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
-use crate::pattern::{Chart, Side, Stitch, Working};
+use crate::pattern::{Chart, Side, Stitch, Structure, Working};
 
 /// A number that is out of the bounds of the scene format, in words.
 type Written<T> = Result<T, String>;
@@ -102,12 +102,18 @@ fn fabric(scene: &Scene) -> Written<FabricText> {
 
 /// The smallest repeat and the size, so that a large fabric of a small repeat stays readable.
 fn chart(scene: &Scene) -> ChartText {
-    let (worked, first_row) = match scene.working {
+    let (chart, working) = match &scene.structure {
+        Structure::Chart { chart, working } => (chart, *working),
+        Structure::Machine(program) => {
+            return ChartText { knitout: Some(program.text.clone()), ..ChartText::default() };
+        }
+    };
+    let (worked, first_row) = match working {
         Working::Round => (Worked::Round, None),
         Working::Flat { first_row: Side::RightSide } => (Worked::Flat, Some(FirstRow::RightSide)),
         Working::Flat { first_row: Side::WrongSide } => (Worked::Flat, Some(FirstRow::WrongSide)),
     };
-    let repeat = scene.chart.smallest_repeat();
+    let repeat = chart.smallest_repeat();
     let (lines, legend) = spelled(&repeat);
     let names = |row: &[Stitch], at: usize| (0..row.len()).map(|k| name(repeat.yarn(at, k))).collect();
     let yarns = repeat.rows().iter().enumerate().rev().map(|(at, row)| names(row, at)).collect();
@@ -115,8 +121,8 @@ fn chart(scene: &Scene) -> ChartText {
         symbols: Some(lines),
         legend: Some(legend),
         yarns: (scene.yarn_colors.len() > 1).then_some(yarns),
-        columns: Some(scene.chart.cast_on() as u64),
-        rows: Some(scene.chart.row_count() as u64),
+        columns: Some(chart.cast_on() as u64),
+        rows: Some(chart.row_count() as u64),
         worked: Some(worked),
         first_row,
         ..ChartText::default()
@@ -146,7 +152,12 @@ fn name(yarn: u8) -> char {
 fn other_yarns(scene: &Scene) -> BTreeMap<String, OtherYarnText> {
     let text = |color: &[u8; 3]| OtherYarnText { color: Some(Color(*color)) };
     let others = scene.yarn_colors.iter().enumerate().skip(1);
-    others.map(|(at, color)| (name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(), text(color))).collect()
+    // Letters name the yarns of a chart, carriers those of a program.
+    let named = |at: usize| match &scene.structure {
+        Structure::Chart { .. } => name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(),
+        Structure::Machine(program) => program.knitted.carriers.get(at).cloned().unwrap_or_default(),
+    };
+    others.map(|(at, color)| (named(at), text(color))).collect()
 }
 
 fn simulation(scene: &Scene) -> Written<SimulationText> {

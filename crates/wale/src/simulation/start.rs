@@ -3,7 +3,7 @@
 use crate::dynamics::loop_shapes::lay_loop_shapes;
 use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
 use crate::model::{FabricCard, Network, YarnCard};
-use crate::pattern::{Chart, Working, knit};
+use crate::pattern::{Chart, Structure, knit};
 
 /// Most loops of a repeat that is relaxed for its loop shapes.
 pub const MOST_TILE_LOOPS: usize = 100;
@@ -33,19 +33,19 @@ pub struct StartReport {
 }
 
 impl Start {
-    /// Lays out a chart; `compensate` gives every loop the shape that it has in the relaxed repeat
-    /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large, or that does not repeat,
-    /// keeps the plain layout.
+    /// Lays out a fabric; `compensate` gives every loop the shape that it has in the relaxed repeat
+    /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large, or that does not repeat, and a
+    /// machine's program keep the plain layout.
     #[must_use]
-    pub fn new(chart: &Chart, working: Working, yarn: &YarnCard, card: &FabricCard, compensate: bool) -> Self {
-        let mut network = knit::fabric(chart, working, card);
-        let repeat = chart.smallest_repeat();
-        let small = compensate && repeat.loop_count() <= MOST_TILE_LOOPS;
-        let Some(tile) = small.then(|| knit::tile(&repeat, card).ok()).flatten() else {
+    pub fn new(structure: &Structure, yarn: &YarnCard, card: &FabricCard, compensate: bool) -> Self {
+        let mut network = structure.network(card);
+        let repeat = structure.chart().filter(|_| compensate).map(Chart::smallest_repeat);
+        let repeat = repeat.filter(|repeat| repeat.loop_count() <= MOST_TILE_LOOPS);
+        let Some(tile) = repeat.and_then(|repeat| knit::tile(&repeat, card).ok()) else {
             return Self { network, compensation: None };
         };
         let relaxed = relax_repeat(&tile, yarn, card);
-        lay_loop_shapes(&mut network, &tile, &relaxed, working == Working::Round);
+        lay_loop_shapes(&mut network, &tile, &relaxed, structure.is_round());
         let report = StartReport {
             width_change: relaxed.wale_spacing / card.wale_spacing,
             height_change: relaxed.course_spacing / card.course_spacing,

@@ -37,6 +37,7 @@ use super::increase::Parts;
 use super::stitch::Stitch;
 use super::working::Working;
 
+pub(crate) use lexer::shortened;
 pub use write::write_instructions;
 
 /// What written instructions say.

@@ -7,14 +7,14 @@ use super::{Failure, exactly_one, yarns};
 use crate::pattern::instructions::{self, LARGEST_TEXT, read_instructions};
 use crate::pattern::named::{self, NamedPatternError, named_pattern};
 use crate::pattern::symbols::{Legend, default_legend, read_symbols};
-use crate::pattern::{Chart, ChartError, Side, Stitch, Working};
+use crate::pattern::knitout::{KnitoutError, KnitoutErrorReason, LARGEST_PROGRAM};
+use crate::pattern::{Chart, ChartError, Program, Side, Stitch, Structure, Working};
 use crate::scene::error::{Complaint, ErrorClass, SceneError, nearest, shortened};
 use crate::scene::schema::{ChartText, FirstRow, Worked};
 
 /// The chart of a scene, how it is worked, the names of its yarns, and the files it was read from.
 pub(super) struct Stitches {
-    pub chart: Chart,
-    pub working: Working,
+    pub structure: Structure,
     /// By the chart's numbers; empty where none is named.
     pub yarns: Vec<String>,
     pub inputs: Vec<PathBuf>,
@@ -40,11 +40,28 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
         ("symbols", text.symbols.is_some()),
         ("image", image_of_stitches),
         ("file", text.file.is_some()),
+        ("knitout", text.knitout.is_some()),
     ];
     exactly_one(HERE, &given)?;
     if text.legend.is_some() && text.symbols.is_none() {
         let complaint = Complaint::new(format!("{HERE}.legend"), "a legend without symbols");
         return Err(complaint.mend("leave the legend out, or draw the chart with symbols").into());
+    }
+    if let Some(program) = &text.knitout {
+        let program = Program::new(program.clone())
+            .map_err(|error| Complaint::new(format!("{HERE}.knitout"), error.to_string()).class(program_class(&error)))?;
+        return machine(text, program, Vec::new());
+    }
+    if let Some(name) = text.file.as_deref().filter(|name| name.ends_with(".k") || name.ends_with(".knitout")) {
+        let key = format!("{HERE}.file");
+        let path = path_beside(&key, name, directory)?;
+        let content = read_text(&path, &key, name, LARGEST_PROGRAM)?;
+        let program = Program::new(content.clone()).map_err(|error| {
+            let complaint = Complaint::new("", error.to_string()).class(program_class(&error));
+            let span = Some(error.span.clone());
+            Failure::Elsewhere(Box::new(SceneError::new(complaint, &path.display().to_string(), &content, span)))
+        })?;
+        return machine(text, program, vec![path]);
     }
     let worked = working(text)?;
     let mut inputs: Vec<PathBuf> = drawn.iter().map(|drawn| drawn.path().to_path_buf()).collect();
@@ -59,7 +76,7 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
         (sized(&symbols(lines, text)?, text, false)?, worked, Vec::new())
     } else if let Some(file) = text.file.as_deref() {
         let read = written(text, file, directory)?;
-        inputs.extend(read.inputs);
+        inputs.push(read.input);
         (read.chart, read.working, read.yarns)
     } else {
         match &drawn {
@@ -74,7 +91,33 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
         }
     };
     let (chart, yarns) = yarns::assign(chart, named, text, drawn.as_ref())?;
-    Ok(Stitches { chart, working, yarns, inputs })
+    Ok(Stitches { structure: Structure::Chart { chart, working }, yarns, inputs })
+}
+
+/// A machine's program says all itself.
+fn machine(text: &ChartText, program: Program, inputs: Vec<PathBuf>) -> Result<Stitches, Failure> {
+    let beside = [
+        ("columns", text.columns.is_some()),
+        ("rows", text.rows.is_some()),
+        ("worked", text.worked.is_some()),
+        ("first_row", text.first_row.is_some()),
+        ("stripes", text.stripes.is_some()),
+        ("yarns", text.yarns.is_some()),
+        ("legend", text.legend.is_some()),
+    ];
+    if let Some((key, _)) = beside.iter().find(|(_, given)| *given) {
+        let complaint = Complaint::new(format!("{HERE}.{key}"), format!("{key} beside a program in knitout"));
+        return Err(complaint.why("the program says it itself").mend(format!("leave {key} out")).into());
+    }
+    let yarns = program.knitted.carriers.clone();
+    Ok(Stitches { structure: Structure::Machine(Box::new(program)), yarns, inputs })
+}
+
+fn program_class(error: &KnitoutError) -> ErrorClass {
+    match *error.reason {
+        KnitoutErrorReason::TooLong { .. } | KnitoutErrorReason::TooManyLoops => ErrorClass::ResourceLimit,
+        _ => ErrorClass::BadInput,
+    }
 }
 
 fn working(text: &ChartText) -> Result<Working, Complaint> {
@@ -177,8 +220,16 @@ pub(super) fn unknown_stitch(path: &str, name: &str) -> Complaint {
         .mend(format!("{near}stitches are: {}", Stitch::names()))
 }
 
+/// What a file of written instructions says.
+struct Read {
+    chart: Chart,
+    working: Working,
+    yarns: Vec<String>,
+    input: PathBuf,
+}
+
 /// A chart from a file of written instructions.
-fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Stitches, Failure> {
+fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Read, Failure> {
     let key = format!("{HERE}.file");
     let path = path_beside(&key, name, directory)?;
     let content = read_text(&path, &key, name, LARGEST_TEXT)?;
@@ -220,5 +271,5 @@ fn written(text: &ChartText, name: &str, directory: Option<&Path>) -> Result<Sti
             .into());
     }
     let chart = sized(&chart, text, false)?;
-    Ok(Stitches { chart, working: read.working, yarns: read.yarns, inputs: vec![path] })
+    Ok(Read { chart, working: read.working, yarns: read.yarns, input: path })
 }

@@ -48,12 +48,12 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     let simulation = plan::simulation(&text.simulation.clone().unwrap_or_default())?;
     let output = plan::output(&text.output.clone().unwrap_or_default());
     let obstacles = happening::obstacles(&text.obstacle, simulation.duration)?;
-    let size = [stitches.chart.row_count(), stitches.chart.column_count()];
+    let size = stitches.structure.size();
     let grips = happening::grips(&text.grip, simulation.duration, placement.center, size)?;
     let plan = Plan { placement, simulation, obstacles, grips, output };
     let title = text.title.clone().unwrap_or_default();
     let yarn_colors = yarns::colors(&stitches.yarns, yarn_color, &text.yarns)?;
-    let scene = Scene { title, yarn, yarn_colors, fabric, chart: stitches.chart, working: stitches.working, plan };
+    let scene = Scene { title, yarn, yarn_colors, fabric, structure: stitches.structure, plan };
     Ok((scene, stitches.inputs))
 }
 

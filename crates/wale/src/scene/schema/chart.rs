@@ -34,9 +34,13 @@ pub struct ChartText {
     /// The yarn of each stitch as rows of single characters, the last row first, repeated over the fabric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub yarns: Option<Vec<String>>,
-    /// A file of written row instructions beside the scene, as in "rib.knit".
+    /// A file beside the scene: written row instructions, as in "rib.knit", or a program for a knitting machine in knitout,
+    /// as in "sleeve.k" or "sleeve.knitout".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
+    /// The text of a program in knitout.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub knitout: Option<String>,
     /// Stitches of a row. Patterns and symbols are repeated and cut off to this size; for a file it is the cast-on.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub columns: Option<u64>,

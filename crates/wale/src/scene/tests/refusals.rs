@@ -37,7 +37,7 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
         ("schema = 1\n[fabric]\n", "fabric", "no chart", "[fabric.chart]", Input),
         ("schema = 1\nschema = 1\n", "schema", "duplicate key", "", Input),
         ("schema = \n", "", "", "", Input),
-        ("schema = 1\n[fabric.chart]\n", "chart", "none of pattern, symbols, image, file", "", Input),
+        ("schema = 1\n[fabric.chart]\n", "chart", "none of pattern, symbols, image, file, knitout", "", Input),
         (
             "schema = 1\n[fabric.chart]\npattern = \"gartr\"\n",
             "\"gartr\"",
@@ -110,7 +110,7 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
             "schema = 1\n[fabric.chart]\npattern = \"seed\"\nsymbols = [\"k\"]\n",
             "[\"k\"]",
             "both given",
-            "keep one of pattern, symbols, image, file",
+            "keep one of pattern, symbols, image, file, knitout",
             Input,
         ),
         (

@@ -1,0 +1,90 @@
+//! What a fabric is made by: a chart that hands work, or a program that a machine works.
+
+use super::chart::Chart;
+use super::knit;
+use super::knitout::{KnitoutError, Knitted, read_knitout};
+use super::working::Working;
+use crate::model::{FabricCard, Network};
+
+/// The making of a fabric.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Structure {
+    /// Rows of stitches, flat or in the round.
+    Chart {
+        /// The stitches.
+        chart: Chart,
+        /// How they are worked.
+        working: Working,
+    },
+    /// A program in knitout.
+    Machine(Box<Program>),
+}
+
+/// A program in knitout and what it becomes.
+#[derive(Clone, PartialEq, Debug)]
+pub struct Program {
+    /// Its text.
+    pub text: String,
+    /// Its loops.
+    pub knitted: Knitted,
+}
+
+impl Program {
+    /// Works a program.
+    ///
+    /// # Errors
+    /// Where it is no knitout or cannot be knitted.
+    pub fn new(text: String) -> Result<Self, KnitoutError> {
+        Ok(Self { knitted: read_knitout(&text)?, text })
+    }
+}
+
+impl Structure {
+    /// A chart worked flat, its right side first.
+    #[must_use]
+    pub fn flat(chart: Chart) -> Self {
+        Self::Chart { chart, working: Working::default() }
+    }
+
+    /// The chart, if there is one.
+    #[must_use]
+    pub fn chart(&self) -> Option<&Chart> {
+        match self {
+            Self::Chart { chart, .. } => Some(chart),
+            Self::Machine(_) => None,
+        }
+    }
+
+    /// Whether the fabric is laid out as a tube.
+    #[must_use]
+    pub fn is_round(&self) -> bool {
+        matches!(self, Self::Chart { working: Working::Round, .. })
+    }
+
+    /// Rows and columns.
+    #[must_use]
+    pub fn size(&self) -> [usize; 2] {
+        match self {
+            Self::Chart { chart, .. } => [chart.row_count(), chart.column_count()],
+            Self::Machine(program) => program.knitted.graph.size.map(|n| n as usize),
+        }
+    }
+
+    /// Number of different yarns.
+    #[must_use]
+    pub fn yarn_count(&self) -> usize {
+        match self {
+            Self::Chart { chart, .. } => chart.yarn_count(),
+            Self::Machine(program) => program.knitted.carriers.len(),
+        }
+    }
+
+    /// The network of its plain layout.
+    #[must_use]
+    pub fn network(&self, card: &FabricCard) -> Network {
+        match self {
+            Self::Chart { chart, working } => knit::fabric(chart, *working, card),
+            Self::Machine(program) => knit::network(&program.knitted.graph, card),
+        }
+    }
+}
