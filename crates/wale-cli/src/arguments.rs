@@ -65,6 +65,9 @@ pub struct Patterns {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
+    /// Draw the pattern, or each of the library, into a folder; large repeats take minutes
+    #[arg(long, value_name = "FOLDER")]
+    pub pictures: Option<PathBuf>,
 }
 
 /// `wale new`

@@ -35,7 +35,7 @@ fn main() -> ExitCode {
         Command::View(arguments) => commands::view::view(arguments),
         Command::Export(arguments) => commands::export::export(arguments),
         Command::Bench(arguments) => commands::bench::bench(arguments),
-        Command::Patterns(arguments) => commands::patterns::patterns(&arguments),
+        Command::Patterns(arguments) => commands::patterns::patterns(arguments),
         Command::Schema => commands::schema::schema(),
         Command::Version(arguments) => commands::version::version(arguments),
     })

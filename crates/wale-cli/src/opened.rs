@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use wale::geometry::{Curve, CurveSettings, Solid, curves, solid_at};
 use wale::model::{Frame, Network};
-use wale::pattern::knit;
 use wale::record::{RecordError, RunReader};
 use wale::scene::{ErrorClass, Scene, SceneError, SceneFile};
 use wale::simulation::{Simulation, Start};

@@ -18,7 +18,7 @@
 //!     rows = 4
 //! ";
 //! let scene = Scene::from_text(text, "swatch.toml")?;
-//! let start = Start::new(&scene.chart, scene.working, &scene.yarn, &scene.fabric, false);
+//! let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, false);
 //! let mut simulation = Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone());
 //! let report = simulation.step()?;
 //! assert!(report.time > 0.0 && report.largest_stretch < 1.1);

@@ -16,6 +16,7 @@ struct Played {
     first: Shape,
     last: Shape,
     steps: Vec<StepReport>,
+    simulation: Simulation,
     /// Speed of the nodes at the end, root mean square \[m/s\].
     speed: f64,
 }
@@ -41,6 +42,7 @@ fn play(name: &str) -> Played {
         start,
         steps,
         speed: (squares / nodes as f64).sqrt(),
+        simulation,
     }
 }
 
@@ -147,4 +149,54 @@ fn rest_shape_compensation_keeps_the_size() {
     println!("shrinkage {:.1} % with, {:.1} % without", 100.0 * shrinkage(&with), 100.0 * shrinkage(&without));
     assert!(with.start.compensation.is_some() && without.start.compensation.is_none());
     assert!(shrinkage(&with).abs() < 0.03 && shrinkage(&without).abs() > 3.0 * shrinkage(&with).abs());
+}
+
+/// How far the loops of a row lie above and below its mean, by their place in a repeat of so many columns \[m\].
+fn wave(simulation: &Simulation, row: u32, repeat: u32) -> f64 {
+    let network = simulation.network();
+    let frame = simulation.frame();
+    let mut heights = vec![(0.0, 0_u32); repeat as usize];
+    for info in network.loops.iter().filter(|info| info.row == row && !info.nodes.is_empty()) {
+        let mean = info.nodes.iter().map(|node| frame.positions[node.index()].y).sum::<f64>() / info.nodes.len() as f64;
+        let at = &mut heights[(info.column % repeat) as usize];
+        *at = (at.0 + mean, at.1 + 1);
+    }
+    let means: Vec<f64> = heights.iter().filter(|at| at.1 > 0).map(|at| at.0 / f64::from(at.1)).collect();
+    means.iter().copied().fold(f64::MIN, f64::max) - means.iter().copied().fold(f64::MAX, f64::min)
+}
+
+#[test]
+fn feather_and_fan_waves() {
+    let lace = play("feather-and-fan.toml");
+    // Plain rows below and above the eyelets.
+    let waves = [16, 17, 19].map(|row| wave(&lace.simulation, row, 18));
+    println!("feather and fan: waves of {waves:.4?} m, speed {:.1} mm/s, {:?}", 1e3 * lace.speed, lace.last);
+    assert!(waves.iter().all(|wave| *wave > 2.0 * lace.last.course_spacing_m), "{waves:?}");
+    assert!(lace.steps.last().unwrap().largest_stretch < 1.2);
+}
+
+#[test]
+fn tucks_berries_and_stripes_lie_as_cloth() {
+    for name in ["fishermans-rib.toml", "bramble.toml", "garter-stripes.toml"] {
+        let played = play(name);
+        let last = played.steps.last().unwrap();
+        println!(
+            "{name}: speed {:.1} mm/s, stretch {:.3}, {:?}",
+            1e3 * played.speed,
+            last.largest_stretch,
+            played.last
+        );
+        assert!(last.largest_stretch < 1.2 && played.speed < 0.05, "{name}");
+        let [width, height] = [0, 1].map(|axis| played.last.extent_m[axis] / played.first.extent_m[axis]);
+        assert!((0.8..1.25).contains(&width) && (0.8..1.25).contains(&height), "{name}: {width} {height}");
+        assert!(played.last.extent_m[2] < 0.35 * played.last.extent_m[1], "{name} lies on the table");
+    }
+}
+
+#[test]
+fn a_machines_program_becomes_cloth() {
+    let sampler = play("machine-sampler.toml");
+    let last = sampler.steps.last().unwrap();
+    println!("sampler: speed {:.1} mm/s, stretch {:.3}, {:?}", 1e3 * sampler.speed, last.largest_stretch, sampler.last);
+    assert!(last.largest_stretch < 1.2);
 }

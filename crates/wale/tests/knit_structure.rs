@@ -221,7 +221,8 @@ fn check_both_ways(chart: &Chart, card: &FabricCard) {
 #[test]
 fn knits_and_purls_mirror_each_other() {
     let (_, card) = cards();
-    let (knits, purls) = (knit::tile(&Chart::stockinette(), &card).unwrap(), knit::tile(&Chart::reverse_stockinette(), &card).unwrap());
+    let (knits, purls) =
+        (knit::tile(&Chart::stockinette(), &card).unwrap(), knit::tile(&Chart::reverse_stockinette(), &card).unwrap());
     for (a, b) in knits.stitches.iter().zip(&purls.stitches) {
         assert_eq!(a.wrap_sign, -b.wrap_sign);
     }

@@ -51,7 +51,9 @@ fn any_chart() -> impl Strategy<Value = Chart> {
                 let left = below.clone().count();
                 let held: usize = below.clone().take(stitch.takes()).sum();
                 let grown = above.len() + stitch.leaves() + left > 20;
-                let fits = stitch.takes() <= left && held < Chart::MOST_STACKED && !(grown && stitch.leaves() > stitch.takes());
+                let fits = stitch.takes() <= left
+                    && held < Chart::MOST_STACKED
+                    && !(grown && stitch.leaves() > stitch.takes());
                 let stitch = if fits { stitch } else { Stitch::Purl };
                 let taken: usize = below.by_ref().take(stitch.takes()).sum();
                 match stitch {
@@ -81,7 +83,9 @@ fn check_graph(graph: &LoopGraph) {
         }
         for parent in &of.parents {
             let below = &graph.loops[parent.of.index()];
-            assert!(below.children.iter().any(|child| child.of.index() == at && child.image == parent.image.map(|k| -k)));
+            assert!(
+                below.children.iter().any(|child| child.of.index() == at && child.image == parent.image.map(|k| -k))
+            );
             held += 1;
         }
     }
@@ -168,7 +172,8 @@ fn joined(network: &Network) -> Vec<String> {
         }
     }
     for node in (0..network.node_count()).filter(|node| own[*node]) {
-        let kinds: Vec<_> = network.stack(NodeId::new(node)).iter().map(|pass| network.pass_kind[pass.index()]).collect();
+        let kinds: Vec<_> =
+            network.stack(NodeId::new(node)).iter().map(|pass| network.pass_kind[pass.index()]).collect();
         found.push(format!("{} {kinds:?}", name(NodeId::new(node))));
     }
     found.sort();
@@ -204,9 +209,7 @@ fn several_loops_into_one_share_its_head() {
     let parent = network.loops.iter().find(|info| (info.row, info.column) == (0, 1)).unwrap();
     // Own four nodes, and four of each of the two loops knitted into it; the yarn-over between them holds nothing.
     let yarn = network.pass_yarn();
-    let passes: Vec<usize> = (0..network.pass_count())
-        .filter(|p| yarn[*p].index() == 0)
-        .collect();
+    let passes: Vec<usize> = (0..network.pass_count()).filter(|p| yarn[*p].index() == 0).collect();
     let at = |node: NodeId| passes.iter().copied().filter(|p| network.pass_node[*p] == node).collect::<Vec<_>>();
     let feet = [parent.nodes[0], parent.nodes[3]].map(|node| {
         let own = at(node).into_iter().find(|p| network.pass_kind[*p] == wale::model::PassKind::FootHead);
@@ -216,9 +219,8 @@ fn several_loops_into_one_share_its_head() {
     let shared = network.segment_share.iter().filter(|share| **share == 2).count();
     assert_eq!(shared, 2 * 2 + 3 + 2 * 2, "contacts of the parent, its three heads, and contacts of the two");
     let whole = |share: u8| {
-        let lengths = (0..network.pass_count() - 1).filter(|p| {
-            network.segment_kind[*p] == SegmentKind::Stitch && network.segment_share[*p] == share
-        });
+        let lengths = (0..network.pass_count() - 1)
+            .filter(|p| network.segment_kind[*p] == SegmentKind::Stitch && network.segment_share[*p] == share);
         lengths.map(|p| network.arc_length[p + 1] - network.arc_length[p]).sum::<f64>()
     };
     assert!((whole(2) / 8.0 - 0.5 * card.stitch_length).abs() < 1e-12);

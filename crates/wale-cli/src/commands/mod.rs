@@ -5,6 +5,7 @@ pub mod check;
 pub mod export;
 pub mod inspect;
 pub mod new;
+pub mod pattern_pictures;
 pub mod patterns;
 pub mod plot;
 pub mod relax;

@@ -10,11 +10,17 @@ use wale::pattern::symbols::write_symbols;
 use wale::pattern::{Chart, Stitch, Working};
 
 use crate::arguments::Patterns;
+use crate::commands::pattern_pictures;
 use crate::exit::{Code, Failure};
 use crate::{output, say};
 
 /// Lists or shows them.
 pub fn patterns(arguments: &Patterns) -> Result<(), Failure> {
+    if let Some(folder) = &arguments.pictures {
+        let all = || library().iter().map(|pattern| pattern.name.clone()).collect();
+        let names = arguments.name.as_ref().map_or_else(all, |name| vec![name.to_lowercase()]);
+        return pattern_pictures::draw(&names, folder);
+    }
     match &arguments.name {
         Some(name) => show(name, arguments.json),
         None => list(arguments.json),

@@ -37,9 +37,8 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
             ),
         ));
     }
-    let tile = knit::tile(&repeat, card).map_err(|error| {
-        Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.scene.display()))
-    })?;
+    let tile = knit::tile(&repeat, card)
+        .map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.scene.display())))?;
     let mut found: Vec<(u64, TileEquilibrium)> = (1..=u64::from(arguments.starts))
         .into_par_iter()
         .map(|seed| {

@@ -35,7 +35,7 @@ pub struct Compression {
 }
 
 /// Most yarns of a stack.
-const MOST_YARNS: usize = 4;
+const MOST_YARNS: usize = 8;
 
 /// The passes of a node of more than two yarns.
 #[derive(Clone, Copy, Debug)]

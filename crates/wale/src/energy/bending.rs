@@ -35,6 +35,10 @@ const JAMMING: f64 = 2.0 * 999.0 / (6.0 * FRAC_PI_2);
 /// Below this `|t₁ − t₂|²` the series of `θ²` is exact to round-off.
 const NEARLY_STRAIGHT: f64 = 1e-8;
 
+/// Largest `tan(θ/2)`: a yarn folded in two exactly, as a straight strand is whose nodes pass each other, would bend out of
+/// its plane with infinite curvature.
+const STEEPEST: f64 = 1e4;
+
 impl Bending {
     /// `f(θ)` and its first two derivatives.
     fn profile(&self, theta: f64) -> [f64; 3] {
@@ -205,7 +209,7 @@ impl Angle {
         let (a, b) = (scale(m1, 1.0 / length[0]), scale(m2, 1.0 / length[1]));
         Self {
             theta: 2.0 * opening.atan2(closing),
-            half_tangent: opening / closing,
+            half_tangent: (opening / closing).min(STEEPEST),
             gradient: [a, sub(scale(a, -1.0), b), b],
             tangent: [t1, t2],
             binormal,
@@ -286,6 +290,16 @@ mod tests {
         }
         let total = f64::from(n) * element.energy(&q);
         assert!((total / (stiffness * std::f64::consts::PI / r) - 1.0).abs() < 1e-9, "{total}");
+    }
+
+    #[test]
+    fn a_yarn_folded_in_two_has_finite_derivatives() {
+        let bending = Bending { stiffness: 1.0, rest_angle: 0.4 };
+        let folded = [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.25, 0.0, 0.0, 2.0];
+        for local in [bending.convex(&folded), bending.exact(&folded)] {
+            assert!(local.energy.is_finite() && local.gradient.iter().all(|g| g.is_finite()));
+            assert!(local.hessian.iter().flatten().all(|h| h.is_finite()));
+        }
     }
 
     #[test]

@@ -14,7 +14,10 @@ pub enum ImageError {
     #[error("this is no PNG that can be read: {0}")]
     Png(#[from] png::DecodingError),
     /// More pixels than a chart may have loops.
-    #[error("{width} × {height} pixels are too many: a pixel is a stitch, and at most {} are knitted", Chart::MAX_LOOPS)]
+    #[error(
+        "{width} × {height} pixels are too many: a pixel is a stitch, and at most {} are knitted",
+        Chart::MAX_LOOPS
+    )]
     Size {
         /// Pixels across.
         width: u32,
@@ -107,7 +110,10 @@ mod tests {
         assert_eq!(read_pixels(&indexed).unwrap().colors, [white, red]);
         let gray = png(2, 1, png::ColorType::Grayscale, png::BitDepth::Eight, &[255, 0]);
         assert_eq!(read_pixels(&gray).unwrap().colors, [white, [0; 3]]);
-        assert_eq!((color("#c03020"), color("#c0302"), color("c03020"), color("#c030zz")), (Some(red), None, None, None));
+        assert_eq!(
+            (color("#c03020"), color("#c0302"), color("c03020"), color("#c030zz")),
+            (Some(red), None, None, None)
+        );
     }
 
     #[test]

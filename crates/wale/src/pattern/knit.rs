@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::chart::{Chart, ChartError};
 use super::layout::{Layout, Place};
 use super::loops::{Form, Form2d, Loop, LoopGraph, LoopId, Onward, Stop, Strand};
+use super::rest_lengths::{RestLengths, Segment};
 use super::stacks::{self, Made};
 use super::work::{work, work_tile};
 use super::working::Working;
@@ -52,26 +53,11 @@ struct Step {
     onward: Segment,
 }
 
-/// A segment before its length is known.
-#[derive(Clone, Copy)]
-struct Segment {
-    kind: SegmentKind,
-    /// Rest length beyond that of its kind \[m\].
-    extra: f64,
-    /// How many loops share the strand that it is part of.
-    share: u8,
-}
-
-impl From<SegmentKind> for Segment {
-    fn from(kind: SegmentKind) -> Self {
-        Self { kind, extra: 0.0, share: 1 }
-    }
-}
-
 struct Builder<'a> {
     graph: &'a LoopGraph,
     card: &'a FabricCard,
     layout: Layout,
+    rest: RestLengths,
     /// First own node of each loop (of a cast-on its tie); unused where there is none.
     first_node: Vec<usize>,
     /// First node of the bind-off.
@@ -93,12 +79,12 @@ impl<'a> Builder<'a> {
         };
         if graph.form == Form2d::Tile {
             let [rows, columns] = graph.size.map(f64::from);
-            network.periods =
-                Some([DVec3::X * card.wale_spacing * columns, DVec3::Y * card.course_spacing * rows]);
+            network.periods = Some([DVec3::X * card.wale_spacing * columns, DVec3::Y * card.course_spacing * rows]);
         }
         Self {
             graph,
             card,
+            rest: RestLengths::new(card, &layout),
             layout,
             first_node: Vec::with_capacity(graph.loops.len()),
             top_start: 0,
@@ -212,7 +198,8 @@ impl<'a> Builder<'a> {
     fn loop_steps(&self, id: LoopId) -> Vec<Step> {
         let of = self.graph.of(id);
         let first = self.first_node[id.index()];
-        let own = |corner, kind, onward: SegmentKind| Step { owner: Some(id), ..step(first + corner, kind, onward.into()) };
+        let own =
+            |corner, kind, onward: SegmentKind| Step { owner: Some(id), ..step(first + corner, kind, onward.into()) };
         let mut steps = Vec::with_capacity(8);
         match of.form {
             Form::CastOn => {
@@ -233,9 +220,9 @@ impl<'a> Builder<'a> {
                 steps.push(own(LEFT_LEG, PassKind::Leg, SegmentKind::Leg));
                 self.upward(id, &mut steps);
                 // A loop that is bound off, or that nothing holds, has as much yarn as others.
-                let unheld = self.card.stitch_length;
+                let unheld = self.rest.stitch;
                 if steps.len() == 2 {
-                    let [leg, head, _] = self.between_contacts();
+                    let [leg, head, _] = self.rest.parts;
                     steps[1].onward.extra = leg + head + 2.0 * unheld;
                 } else if of.children.is_empty() {
                     steps[1].onward.extra = unheld;
@@ -258,29 +245,6 @@ impl<'a> Builder<'a> {
     fn share(&self, of: &Loop) -> u8 {
         let siblings = of.parents.iter().map(|held| self.graph.of(held.of).children.len()).max();
         u8::try_from(siblings.unwrap_or(1)).unwrap_or(u8::MAX).max(1)
-    }
-
-    /// The segment between two loops that follow each other in a row, `past` places of the needle. A yarn-over has legs
-    /// that nothing holds at their feet: half a sinker and the stitch contact that it lacks are part of each.
-    fn joint(&self, from: &Loop, to: &Loop, past: u32) -> Segment {
-        let [leg, _, sinker] = self.between_contacts();
-        let unheld = self.card.stitch_length;
-        let float = f64::from(past) * self.card.wale_spacing;
-        let open = |of: &Loop| of.form == Form::Open;
-        let knit = |of: &Loop| match of.form {
-            Form::Worked { knit } => Some(knit),
-            _ => None,
-        };
-        let bound = |of: &Loop| if open(of) && of.children.is_empty() { unheld } else { 0.0 };
-        let (kind, extra) = match (open(from), open(to)) {
-            (true, true) => (SegmentKind::Leg, leg + 2.0 * unheld + sinker),
-            (true, false) | (false, true) => (SegmentKind::Leg, unheld + 0.5 * sinker),
-            _ if matches!((knit(from), knit(to)), (Some(a), Some(b)) if a != b) => {
-                (SegmentKind::Sinker, self.card.transition_length * self.card.loop_length)
-            }
-            _ => (SegmentKind::Sinker, 0.0),
-        };
-        Segment { kind, extra: extra + bound(from) + bound(to) + float, share: 1 }
     }
 
     /// The steps along a strand, each with the segment that leads on; `closed` strands lead on to their own beginning.
@@ -325,7 +289,7 @@ impl<'a> Builder<'a> {
                 (Onward::Sinker { over }, Some((Stop::Loop { id: next, .. }, _))) => {
                     self.network.floats.extend((*over > 0).then_some(*over));
                     let (from, to) = if rightward { (id, *next) } else { (*next, id) };
-                    self.joint(graph.of(from), graph.of(to), *over)
+                    self.rest.joint(graph.of(from), graph.of(to), *over)
                 }
                 (Onward::Chain, _) => SegmentKind::Chain.into(),
                 _ => SegmentKind::Edge.into(),
@@ -363,7 +327,7 @@ impl<'a> Builder<'a> {
             if i + 1 == path.len() {
                 to += periods[0];
             }
-            arc += self.rest_length(step, to.distance(place(self, step)));
+            arc += self.rest.of(step.onward, to.distance(place(self, step)));
         }
         self.close_yarn(Some(([1, 0], arc)), strand.yarn);
     }
@@ -411,33 +375,10 @@ impl<'a> Builder<'a> {
             self.push_pass(step, arc);
             if let Some(next) = path.get(i + 1) {
                 let distance = self.network.position[step.node].distance(self.network.position[next.node]);
-                arc += self.rest_length(step, distance);
+                arc += self.rest.of(step.onward, distance);
             }
         }
         self.close_yarn(None, yarn);
-    }
-
-    /// Rest length of the segment after `step`, whose ends lie `distance` apart in the layout: every loop holds its
-    /// length, however the layout shears it.
-    fn rest_length(&self, step: &Step, distance: f64) -> f64 {
-        let [leg, head, sinker] = self.between_contacts();
-        let Segment { kind, extra, share } = step.onward;
-        let own = match kind {
-            SegmentKind::Stitch => self.card.stitch_length / f64::from(share),
-            SegmentKind::Edge | SegmentKind::Chain => distance,
-            SegmentKind::Leg => leg,
-            SegmentKind::Head => head / f64::from(share),
-            SegmentKind::Sinker => sinker,
-        };
-        own + extra
-    }
-
-    /// Rest lengths of a leg, a head and a sinker, so that a plain loop holds its loop length \[m\].
-    fn between_contacts(&self) -> [f64; 3] {
-        let [leg, head, sinker] = self.layout.between_contacts();
-        let laid = 2.0 * leg + head + sinker;
-        let slack = (self.card.loop_length - 4.0 * self.card.stitch_length) / laid;
-        [slack * leg, slack * head, slack * sinker]
     }
 
     fn push_pass(&mut self, step: &Step, arc: f64) {

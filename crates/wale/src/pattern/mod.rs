@@ -13,6 +13,7 @@ pub mod named;
 mod places;
 mod plain;
 mod repeat;
+mod rest_lengths;
 mod stacks;
 pub mod stitch;
 mod strands;

@@ -79,7 +79,9 @@ pub(super) fn periodic(courses: &[Course], counts: &[usize]) -> Vec<Strand> {
             let stops = loops
                 .iter()
                 .zip(next)
-                .map(|(made, next)| (Stop::Loop { id: made.id, rightward: true }, Onward::Sinker { over: over(*made, next) }))
+                .map(|(made, next)| {
+                    (Stop::Loop { id: made.id, rightward: true }, Onward::Sinker { over: over(*made, next) })
+                })
                 .collect();
             debug_assert!(last.twice_column < image.twice_column);
             strands.push(Strand { yarn, stops });
@@ -110,9 +112,8 @@ pub(super) fn finite(graph: &LoopGraph, courses: &[Course], working: Working, co
         for (yarn, loops) in course.by_yarn(rightward) {
             let first = loops[0];
             let known = open.iter().position(|known| known.strand.yarn == yarn);
-            let joined = known.and_then(|known| {
-                join(graph, &mut open[known], row, first, rightward, round, counts).then_some(known)
-            });
+            let joined = known
+                .and_then(|known| join(graph, &mut open[known], row, first, rightward, round, counts).then_some(known));
             let at = joined.unwrap_or_else(|| {
                 if let Some(known) = known {
                     done.push(ended(graph, open.remove(known)));

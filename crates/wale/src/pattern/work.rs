@@ -110,7 +110,8 @@ impl<'a> Worker<'a> {
         let size = [chart.row_count(), chart.column_count()].map(|n| u32::try_from(n).unwrap_or(u32::MAX));
         let loops = Vec::with_capacity(chart.loop_count() + chart.cast_on());
         let row_places = Vec::with_capacity(chart.row_count());
-        let graph = LoopGraph { form, size, row_places, loops, strands: Vec::new(), bound: Vec::new(), bind_off_yarn: 0 };
+        let graph =
+            LoopGraph { form, size, row_places, loops, strands: Vec::new(), bound: Vec::new(), bind_off_yarn: 0 };
         Self { chart, graph, courses: Vec::new(), counts: vec![chart.cast_on()] }
     }
 
@@ -118,7 +119,17 @@ impl<'a> Worker<'a> {
         let id = LoopId::new(self.graph.loops.len());
         let column = u32::try_from(column).unwrap_or(u32::MAX);
         let place = [f64::from(column) + 0.5, f64::from(row)];
-        self.graph.loops.push(Loop { form, row, column, place, depth: 0.0, parents, children: Vec::new(), bound: None, source: 0 });
+        self.graph.loops.push(Loop {
+            form,
+            row,
+            column,
+            place,
+            depth: 0.0,
+            parents,
+            children: Vec::new(),
+            bound: None,
+            source: 0,
+        });
         id
     }
 

@@ -133,7 +133,9 @@ fn an_image_is_a_chart_of_stitches_or_of_yarns() {
     let read = scene_with("palette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }").unwrap();
     assert_eq!(format!("{:?}", chart_of(&read.scene)), "\nkk\nkk");
     assert_eq!((chart_of(&read.scene).yarn(1, 1), chart_of(&read.scene).yarn(0, 1)), (1, 0));
-    let read = scene_with("pattern = \"garter\"\ncolumns = 3\nrows = 2\npalette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }");
+    let read = scene_with(
+        "pattern = \"garter\"\ncolumns = 3\nrows = 2\npalette = { \"#ffffff\" = \"A\", \"#000000\" = \"B\" }",
+    );
     assert_eq!(format!("{:?}", chart_of(&read.unwrap().scene)), "\nppp\nkkk");
     let error = scene_with("palette = { \"#ffffff\" = \"A\" }").unwrap_err().to_string();
     assert!(error.contains("the pixel 2 from the left, 1 from the top is #000000"), "{error}");
@@ -142,11 +144,13 @@ fn an_image_is_a_chart_of_stitches_or_of_yarns() {
 #[test]
 fn a_machines_program_is_a_fabric() {
     let folder = tempfile::tempdir().unwrap();
-    let program = ";!knitout-2\n;;Carriers: 1 2\nin 1\ntuck - f2 1\ntuck - f1 1\nin 2\nknit + f1 2\nknit + f2 2\nout 1\nout 2\n";
+    let program =
+        ";!knitout-2\n;;Carriers: 1 2\nin 1\ntuck - f2 1\ntuck - f1 1\nin 2\nknit + f1 2\nknit + f2 2\nout 1\nout 2\n";
     std::fs::write(folder.path().join("two.k"), program).unwrap();
     let scene_with = |chart: &str| {
         let path = folder.path().join("scene.toml");
-        std::fs::write(&path, format!("schema = 1\n[yarns.2]\ncolor = \"#ffffff\"\n[fabric.chart]\n{chart}\n")).unwrap();
+        std::fs::write(&path, format!("schema = 1\n[yarns.2]\ncolor = \"#ffffff\"\n[fabric.chart]\n{chart}\n"))
+            .unwrap();
         Scene::read_with_inputs(&path)
     };
     let read = scene_with("file = \"two.k\"").unwrap();

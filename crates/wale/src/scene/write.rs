@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 
 use super::schema::{
     Axes, AxisAngle, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText, KeyText,
-    MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText, SimulationText,
-    SphereText, Worked, YarnText,
+    MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
+    SimulationText, SphereText, Worked, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
@@ -136,7 +136,9 @@ fn spelled(chart: &Chart) -> (Vec<String>, BTreeMap<String, String>) {
     let mut spare = ('0'..='9').chain('A'..='Z').chain('À'..).filter(|c| !taken.contains(c));
     let symbols: BTreeMap<Stitch, char> = used
         .into_iter()
-        .map(|stitch| (stitch, if taken.contains(&stitch.symbol()) { stitch.symbol() } else { spare.next().unwrap_or('?') }))
+        .map(|stitch| {
+            (stitch, if taken.contains(&stitch.symbol()) { stitch.symbol() } else { spare.next().unwrap_or('?') })
+        })
         .collect();
     let line = |row: &Vec<Stitch>| row.iter().map(|stitch| symbols[stitch]).collect();
     let lines = chart.rows().iter().rev().map(line).collect();

@@ -73,7 +73,11 @@ fn counts_that_do_not_work_out_are_named() {
         ("k4, p4, k4, p1", "row 1: up to `k4` the row takes 12 stitches, but there are 10", "k4"),
         ("k4, p4", "row 1: the row ends with `p4` after 8 stitches, but there are 10", "p4"),
         ("*k1*, *p1*", "row 1: `*p1*` stretches to fill the row, which only one part of a row can do here", "*p1*"),
-        ("k2, (k, yo) in next st, k7", "row 1: `(k, yo)` cannot be worked into one stitch: 2 to 9 knits, purls and single yarn-overs between them can", "(k, yo)"),
+        (
+            "k2, (k, yo) in next st, k7",
+            "row 1: `(k, yo)` cannot be worked into one stitch: 2 to 9 knits, purls and single yarn-overs between them can",
+            "(k, yo)",
+        ),
         ("k2, (k, p) in them, k7", "row 1: expected `next st`, found `them`", "them"),
         ("k2, sl1 with yarn up, k7", "row 1: expected `front` or `back`, found `up`", "up"),
         ("*yo*, k10", "row 1: `*yo*` takes no stitch of the row below, so it cannot fill the row", "*yo*"),
@@ -193,7 +197,10 @@ proptest! {
 #[test]
 fn a_stitch_that_is_not_known_is_named_with_those_that_are() {
     let (message, place) = refused("Cast on 10\nRow 1: k2, c4f, k4\n");
-    assert!(message.starts_with("row 1: `c4f` is no stitch that wale knows; it knows k, p, yo, k2tog, ssk"), "{message}");
+    assert!(
+        message.starts_with("row 1: `c4f` is no stitch that wale knows; it knows k, p, yo, k2tog, ssk"),
+        "{message}"
+    );
     assert_eq!(place, "c4f");
 }
 
@@ -216,7 +223,10 @@ fn increases_slips_and_yarns_are_read() {
     assert_eq!(written.chart.rows()[1][0], Stitch::Slip { in_front: true });
     assert_eq!(written.yarns, ["A", "B"]);
     assert_eq!((written.chart.yarn(0, 0), written.chart.yarn(0, 3), written.chart.yarn(1, 0)), (1, 0, 0));
-    assert_eq!(read_instructions(&write_instructions(&written.chart, written.working), None).unwrap().chart, written.chart);
+    assert_eq!(
+        read_instructions(&write_instructions(&written.chart, written.working), None).unwrap().chart,
+        written.chart
+    );
 }
 
 #[test]

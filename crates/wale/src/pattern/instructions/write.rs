@@ -40,7 +40,9 @@ pub fn write_instructions(chart: &Chart, working: Working) -> String {
                 in_hand = yarn;
             }
             let _ = match (stitch, run.len()) {
-                (Stitch::Knit | Stitch::Purl | Stitch::Slip { in_front: false }, count) => write!(text, "{separator}{stitch}{count}"),
+                (Stitch::Knit | Stitch::Purl | Stitch::Slip { in_front: false }, count) => {
+                    write!(text, "{separator}{stitch}{count}")
+                }
                 (stitch, 1) => write!(text, "{separator}{stitch}"),
                 (stitch, count) => write!(text, "{separator}{stitch} {count} times"),
             };

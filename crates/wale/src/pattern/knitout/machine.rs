@@ -29,9 +29,12 @@ struct Made {
 /// A yarn that is in.
 struct Fed {
     since: usize,
-    /// Loops in the order in which they were made, and places of needles that lay between each and the one before.
-    loops: Vec<(usize, u32)>,
+    loops: Path,
 }
+
+/// Loops of a yarn in the order in which they were made, and how many places of needles that hold loops lay between each
+/// and the one before.
+type Path = Vec<(usize, u32)>;
 
 struct Machine {
     rack: f64,
@@ -43,7 +46,7 @@ struct Machine {
     /// Yarns in work, by the carriers that feed them together.
     fed: BTreeMap<Vec<String>, Fed>,
     /// Yarns that are done, with their carriers.
-    done: Vec<(Vec<String>, Vec<(usize, u32)>)>,
+    done: Vec<(Vec<String>, Path)>,
     remarks: Vec<Remark>,
     /// Needles that were empty when they were knitted, after loops had been there or beside them.
     empty: usize,
@@ -79,7 +82,10 @@ pub(super) fn knit(program: &Program) -> Result<Knitted, KnitoutError> {
         machine.done.push((carriers, fed.loops));
     }
     if machine.empty > 0 {
-        let what = format!("{} needles were empty when they were knitted: the yarn is laid over them, as a tuck lays it", machine.empty);
+        let what = format!(
+            "{} needles were empty when they were knitted: the yarn is laid over them, as a tuck lays it",
+            machine.empty
+        );
         machine.remarks.push(Remark { line: 1, what });
     }
     machine.check_cables()?;
@@ -222,7 +228,12 @@ impl Machine {
         } else {
             "the gap between two needles".to_owned()
         };
-        Err(place.error(Reason::Facing { from: from.to_string(), to: to.to_string(), rack: self.rack.to_string(), faces }))
+        Err(place.error(Reason::Facing {
+            from: from.to_string(),
+            to: to.to_string(),
+            rack: self.rack.to_string(),
+            faces,
+        }))
     }
 
     /// Draws a loop through those that a needle holds; where there are none, it is laid over the needle.
@@ -237,9 +248,10 @@ impl Machine {
         let knit = needle.bed.is_front();
         if held.is_empty() {
             // The first loops of a carrier are a cast-on; later ones are yarn-overs or slips of the program.
-            let cast_on = self.fed.get(carriers).is_none_or(|fed| {
-                fed.loops.iter().all(|(id, _)| self.made[*id].form == Form::Open)
-            });
+            let cast_on = self
+                .fed
+                .get(carriers)
+                .is_none_or(|fed| fed.loops.iter().all(|(id, _)| self.made[*id].form == Form::Open));
             self.empty += usize::from(!cast_on);
             return self.make(needle, Form::Open, Vec::new(), rightward, carriers, place);
         }

@@ -26,7 +26,9 @@ const CAST_ON: &str = "inhook 1\ntuck - f2 1\ntuck - f1 1\ntuck + f1 1\nreleaseh
 
 #[test]
 fn rows_go_to_and_fro_over_both_beds() {
-    let knitted = knitted("in 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\nxfer f2 b2\nknit - b2 1\nknit - f1 1\nout 1\n");
+    let knitted = knitted(
+        "in 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\nxfer f2 b2\nknit - b2 1\nknit - f1 1\nout 1\n",
+    );
     let graph = &knitted.graph;
     assert_eq!((graph.loops.len(), graph.size), (6, [3, 2]));
     assert_eq!(parents(&knitted, 4), [3]);
@@ -51,7 +53,9 @@ fn transfers_stack_and_the_bed_decides_what_lies_in_front() {
 
 #[test]
 fn an_empty_needle_takes_a_yarn_over() {
-    let knitted = knitted("in 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\nxfer f1 b1\nrack 1\nxfer b1 f2\nrack 0\nknit - f2 1\nknit - f1 1\n");
+    let knitted = knitted(
+        "in 1\ntuck - f2 1\ntuck - f1 1\nknit + f1 1\nknit + f2 1\nxfer f1 b1\nrack 1\nxfer b1 f2\nrack 0\nknit - f2 1\nknit - f1 1\n",
+    );
     let over = knitted.graph.loops.iter().find(|of| of.source == 13).unwrap();
     assert_eq!((over.form, over.row), (Form::Open, 2));
     assert!(knitted.remarks.iter().any(|remark| remark.what.contains("1 needles were empty")));
@@ -83,11 +87,19 @@ fn programs_that_cannot_be_knitted_say_where_and_why() {
         ("out 1\n", 1, "carrier 1 is taken out but was not brought in"),
         ("rack 40\n", 1, "racked by 40: machines reach 12 needles to either side"),
         ("rack NaN\n", 1, "racked by NaN: machines reach 12 needles to either side"),
-        ("inhook 1\ntuck - f1 1\nknit + f1 1\n", 1, "the hook never lets carrier 1 go; write `releasehook 1` after its first stitches"),
+        (
+            "inhook 1\ntuck - f1 1\nknit + f1 1\n",
+            1,
+            "the hook never lets carrier 1 go; write `releasehook 1` after its first stitches",
+        ),
         ("inhook 1\ninhook 2\n", 2, "the hook still holds carrier 1 from line 3; write `releasehook 1` first"),
         ("in 1\nreleasehook 1\n", 2, "the hook does not hold carrier 1"),
         ("xfer f1 b2\n", 1, "f1 and b2 do not face each other: racked by 0, f1 faces b1"),
-        ("rack 0.5\nxfer f1 b1\n", 2, "f1 and b1 do not face each other: racked by 0.5, f1 faces the gap between two needles"),
+        (
+            "rack 0.5\nxfer f1 b1\n",
+            2,
+            "f1 and b1 do not face each other: racked by 0.5, f1 faces the gap between two needles",
+        ),
         ("knit + f2147483647 1\n", 1, "needle `f2147483647`: needles are numbered from -100000 to 100000"),
         ("knit + q1 1\n", 1, "needle `q1`: needles are numbered from -100000 to 100000"),
         ("knit f1 1\n", 1, "`knit` needs a direction (+ or -) first"),

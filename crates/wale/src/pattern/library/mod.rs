@@ -82,8 +82,17 @@ mod tests {
         assert!(patterns().len() >= 40);
         let names: BTreeSet<&str> = patterns().iter().map(|pattern| pattern.name.as_str()).collect();
         assert_eq!(names.len(), patterns().len());
-        let charts: BTreeSet<String> =
-            patterns().iter().map(|p| format!("{:?}", p.chart.repeat(2 * p.chart.cast_on(), p.chart.row_count()).map(|c| (c.smallest_repeat(), c.yarn_count())))).collect();
+        let charts: BTreeSet<String> = patterns()
+            .iter()
+            .map(|p| {
+                format!(
+                    "{:?}",
+                    p.chart
+                        .repeat(2 * p.chart.cast_on(), p.chart.row_count())
+                        .map(|c| (c.smallest_repeat(), c.yarn_count()))
+                )
+            })
+            .collect();
         assert_eq!(charts.len(), patterns().len(), "two patterns are the same");
         for pattern in patterns() {
             assert_eq!(pattern.chart.smallest_repeat(), pattern.chart, "{} repeats a smaller piece", pattern.name);

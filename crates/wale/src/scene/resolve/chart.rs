@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::beside::{path_beside, read_text};
 use super::{Failure, exactly_one, yarns};
 use crate::pattern::instructions::{self, LARGEST_TEXT, read_instructions};
+use crate::pattern::knitout::{KnitoutError, KnitoutErrorReason, LARGEST_PROGRAM};
 use crate::pattern::named::{self, NamedPatternError, named_pattern};
 use crate::pattern::symbols::{Legend, default_legend, read_symbols};
-use crate::pattern::knitout::{KnitoutError, KnitoutErrorReason, LARGEST_PROGRAM};
 use crate::pattern::{Chart, ChartError, Program, Side, Stitch, Structure, Working};
 use crate::scene::error::{Complaint, ErrorClass, SceneError, nearest, shortened};
 use crate::scene::schema::{ChartText, FirstRow, Worked};
@@ -48,8 +48,9 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
         return Err(complaint.mend("leave the legend out, or draw the chart with symbols").into());
     }
     if let Some(program) = &text.knitout {
-        let program = Program::new(program.clone())
-            .map_err(|error| Complaint::new(format!("{HERE}.knitout"), error.to_string()).class(program_class(&error)))?;
+        let program = Program::new(program.clone()).map_err(|error| {
+            Complaint::new(format!("{HERE}.knitout"), error.to_string()).class(program_class(&error))
+        })?;
         return machine(text, program, Vec::new());
     }
     if let Some(name) = text.file.as_deref().filter(|name| name.ends_with(".k") || name.ends_with(".knitout")) {
@@ -145,7 +146,8 @@ fn pattern(name: &str) -> Result<Chart, Complaint> {
         );
         let near = nearest(name, named::names()).map(|near| format!("did you mean \"{near}\"? "));
         let plain = named::PLAIN.join(", ");
-        complaint.mend(format!("{}patterns are: {plain}, and those that `wale patterns` lists", near.unwrap_or_default()))
+        complaint
+            .mend(format!("{}patterns are: {plain}, and those that `wale patterns` lists", near.unwrap_or_default()))
     })
 }
 
@@ -192,7 +194,8 @@ fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
                     let what = format!("\"{}\" is not one symbol", shortened(symbol));
                     return Err(Complaint::new(path, what).why("every stitch of a chart is one character"));
                 };
-                let stitch = Stitch::read(name).ok_or_else(|| unknown_stitch(&format!("{HERE}.legend.{symbol}"), name))?;
+                let stitch =
+                    Stitch::read(name).ok_or_else(|| unknown_stitch(&format!("{HERE}.legend.{symbol}"), name))?;
                 legend.insert(c, stitch);
             }
             legend

@@ -56,7 +56,10 @@ pub(super) fn image(text: &ChartText, directory: Option<&Path>) -> Result<Option
     }
     let grid = names(&pixels, &meaning)?;
     if meaning.values().all(|name| Stitch::read(name).is_none()) {
-        return Ok(Some(Drawn::Yarns(path, grid.into_iter().map(|row| row.into_iter().map(str::to_owned).collect()).collect())));
+        return Ok(Some(Drawn::Yarns(
+            path,
+            grid.into_iter().map(|row| row.into_iter().map(str::to_owned).collect()).collect(),
+        )));
     }
     let stitch = |name: &str| {
         let color = palette.iter().find(|(_, known)| *known == name).map_or("", |(color, _)| color);
@@ -76,7 +79,8 @@ fn names<'a>(pixels: &Pixels, meaning: &BTreeMap<[u8; 3], &'a str>) -> Result<Ve
         for (at, color) in row.iter().enumerate() {
             let [r, g, b] = color;
             found.push(*meaning.get(color).ok_or_else(|| {
-                let what = format!("the pixel {} from the left, {} from the top is #{r:02x}{g:02x}{b:02x}", at + 1, line + 1);
+                let what =
+                    format!("the pixel {} from the left, {} from the top is #{r:02x}{g:02x}{b:02x}", at + 1, line + 1);
                 Complaint::new(format!("{HERE}.palette"), what)
                     .why("the palette does not have this colour")
                     .mend(format!("add \"#{r:02x}{g:02x}{b:02x}\" to it, or save the image without smoothing"))
@@ -123,13 +127,16 @@ pub(super) fn assign(
     names.sort();
     names.dedup();
     if names.len() > MOST_YARNS {
-        return Err(Complaint::new(key, format!("{} yarns", names.len())).why(format!("at most {MOST_YARNS} can be told apart")));
+        return Err(Complaint::new(key, format!("{} yarns", names.len()))
+            .why(format!("at most {MOST_YARNS} can be told apart")));
     }
     let number = |name: &String| names.iter().position(|known| known == name).unwrap_or(0) as u8;
     let grid: Vec<Vec<u8>> = grid.iter().map(|row| row.iter().map(number).collect()).collect();
-    let yarns = chart.rows().iter().zip(grid.iter().cycle()).map(|(row, yarns)| {
-        yarns.iter().copied().cycle().take(row.len()).collect()
-    });
+    let yarns = chart
+        .rows()
+        .iter()
+        .zip(grid.iter().cycle())
+        .map(|(row, yarns)| yarns.iter().copied().cycle().take(row.len()).collect());
     let yarns = yarns.collect();
     let chart = chart.with_yarns(yarns).map_err(|error| Complaint::new(key, error.to_string()))?;
     Ok((chart, names))
@@ -144,7 +151,8 @@ pub(super) fn colors(
     for other in others.keys() {
         if !names.contains(other) {
             let near = nearest(other, names.iter().map(String::as_str));
-            let complaint = Complaint::new(format!("yarns.{other}"), format!("the chart has no yarn \"{}\"", shortened(other)));
+            let complaint =
+                Complaint::new(format!("yarns.{other}"), format!("the chart has no yarn \"{}\"", shortened(other)));
             return Err(match near {
                 Some(near) => complaint.mend(format!("did you mean \"{near}\"?")),
                 None => complaint.mend("name it in stripes, yarns, palette or the chart's file, or leave it out"),

@@ -1,0 +1,77 @@
+//! Programs of knitting machines: every loop that they make is found again.
+
+use std::path::{Path, PathBuf};
+
+use wale::model::{LoopProportions, YarnCard};
+use wale::pattern::knit;
+use wale::pattern::knitout::read_knitout;
+
+/// Loops that a program makes, counted from its words alone.
+fn loops_written(text: &str) -> usize {
+    let makes = |line: &&str| {
+        let words: Vec<&str> = line.split(';').next().unwrap_or_default().split_ascii_whitespace().collect();
+        match words.as_slice() {
+            ["knit" | "tuck", _, _, _, ..] => true,
+            ["split", _, _, _, carriers @ ..] => !carriers.is_empty(),
+            _ => false,
+        }
+    };
+    text.lines().filter(makes).count()
+}
+
+fn check(path: &Path) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let yarn = YarnCard {
+        linear_density: 3e-4,
+        radius: 5e-4,
+        stretch_stiffness: 0.5,
+        bending_stiffness: 8e-10,
+        friction_coefficient: 0.3,
+        mass_damping: 0.0,
+        stiffness_damping: 0.05,
+        plies: 2,
+        twist: 0.0,
+    };
+    let card = LoopProportions::default().card(&yarn, 9.5e-3);
+    match read_knitout(&text) {
+        Ok(knitted) => {
+            assert_eq!(knitted.graph.loops.len(), loops_written(&text), "{}", path.display());
+            let network = knit::network(&knitted.graph, &card);
+            assert_eq!(network.loops.len(), knitted.graph.loops.len());
+            assert!(network.position.iter().all(|x| x.is_finite()));
+            let rising = |y: usize| {
+                let passes = network.yarn_passes(wale::model::YarnId::new(y));
+                network.arc_length[passes].windows(2).all(|pair| pair[1] > pair[0])
+            };
+            assert!((0..network.yarn_count()).all(rising), "{}", path.display());
+            println!("{}: {} loops", path.display(), knitted.graph.loops.len());
+        }
+        Err(error) => {
+            // Refused for a reason that lies in the program, at a line that it has.
+            assert!(error.line >= 1 && error.line <= text.lines().count(), "{}: {error}", path.display());
+            println!("{}: {error}", path.display());
+        }
+    }
+}
+
+#[test]
+fn our_own_sampler_is_knitted_whole() {
+    check(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/patterns/sampler.k"));
+}
+
+#[test]
+fn collected_programs_are_knitted_or_explained() {
+    let Some(folder) = std::env::var_os("WALE_DATA").map(|data| PathBuf::from(data).join("knitout")) else {
+        println!("skipped: WALE_DATA does not name a folder with collected programs");
+        return;
+    };
+    let mut count = 0;
+    for entry in std::fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|kind| kind == "k" || kind == "knitout") {
+            check(&path);
+            count += 1;
+        }
+    }
+    assert!(count > 0, "{} has no programs", folder.display());
+}
