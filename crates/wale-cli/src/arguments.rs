@@ -323,6 +323,8 @@ pub struct Bench {
 pub enum Subject {
     /// A garter swatch falling on a sphere, at three sizes
     Swatch,
+    /// Garter, lace and other patterns side by side, and how long 100,000 loops of each take to lay out
+    Patterns,
     /// Factors against conjugate gradients, at the sizes around which one takes over from the other
     Solver,
 }

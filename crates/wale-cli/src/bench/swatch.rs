@@ -1,9 +1,10 @@
-//! A garter swatch that falls on a sphere, and how fast it does.
+//! A swatch that falls on a sphere, and how fast it does.
 
 use std::time::Instant;
 
 use serde::Serialize;
 use wale::model::LinearSolver;
+use wale::pattern::named::named_pattern;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start};
 use wale_numerics::block_matrix::BlockMatrix;
@@ -44,12 +45,12 @@ pub struct Measured {
     pub peak_memory_bytes: Option<u64>,
 }
 
-/// Runs a square garter swatch of about so many nodes for so many steps, half of them before it meets the sphere.
+/// Runs a square swatch of a pattern and about so many nodes for so many steps, half of them before it meets the sphere.
 ///
 /// # Errors
 /// When a step fails.
-pub fn measure(nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
-    let mut scene = scene(nodes)?;
+pub fn measure(pattern: &str, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
+    let mut scene = scene(pattern, nodes)?;
     scene.plan.simulation.linear_solver = solver;
     scene.plan.simulation.largest_step = WARM_UP_STEP;
     let began = Instant::now();
@@ -114,13 +115,31 @@ fn frame(simulation: &mut Simulation) -> Result<f64, Failure> {
     Ok(began.elapsed().as_secs_f64())
 }
 
-/// The scene: as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
-fn scene(nodes: u32) -> Result<Scene, Failure> {
+/// Wall time to lay out a fabric of about so many loops \[s\], the best of three, and its loops.
+///
+/// # Errors
+/// When there is no such pattern.
+pub fn lay_out(pattern: &str, loops: u32) -> Result<(f64, usize), Failure> {
+    let scene = scene(pattern, 4 * loops)?;
+    let mut best = (f64::INFINITY, 0);
+    for _ in 0..3 {
+        let began = Instant::now();
+        let network = std::hint::black_box(scene.structure.network(&scene.fabric));
+        best = (began.elapsed().as_secs_f64().min(best.0), network.loops.len());
+    }
+    Ok(best)
+}
+
+/// The scene: about as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
+fn scene(pattern: &str, nodes: u32) -> Result<Scene, Failure> {
     let side = (f64::from(nodes) / 4.0).sqrt().round().max(4.0);
     let width = side * 5e-3;
+    let repeat = named_pattern(pattern).map_err(|error| Failure::new(Code::Usage, error))?;
+    let whole = |of: usize| (side / of as f64).round().max(1.0) * of as f64;
+    let (columns, rows) = (whole(repeat.cast_on()), whole(repeat.row_count()));
     let text = format!(
         "schema = 1\n[yarn]\npreset = \"worsted-wool\"\n[fabric]\ncenter = [0, 0, {center}]\n\
-         [fabric.chart]\npattern = \"garter\"\ncolumns = {side}\nrows = {side}\n\
+         [fabric.chart]\npattern = \"{pattern}\"\ncolumns = {columns}\nrows = {rows}\n\
          [simulation]\nduration = 100\nrelax_first = false\n\
          [[obstacle]]\nsphere = {{ center = [0, 0, 0], radius = {radius} }}\n",
         radius = 0.25 * width,

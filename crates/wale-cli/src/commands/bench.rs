@@ -4,7 +4,7 @@ use serde_json::json;
 use wale::model::LinearSolver;
 
 use crate::arguments::{Bench, Subject};
-use crate::bench::swatch::{Measured, measure};
+use crate::bench::swatch::{Measured, lay_out, measure};
 use crate::bench::triad;
 use crate::exit::Failure;
 use crate::output::{bytes, grouped, note, span};
@@ -17,6 +17,11 @@ const STEPS: usize = 60;
 /// Steps that a solver is measured for.
 const SOLVER_STEPS: usize = 20;
 
+/// Patterns that are compared: plain, yarn-overs and decreases, tucks, increases and deep stacks, several yarns.
+const PATTERNS: [&str; 6] = ["garter", "stockinette", "mesh", "fisherman's rib", "bramble", "stranded check"];
+/// Loops that are laid out.
+const LOOPS: u32 = 100_000;
+
 /// Sizes around which conjugate gradients take over from factors \[nodes\].
 const SOLVER_NODES: [u32; 4] = [1000, 2000, 4000, 8000];
 
@@ -25,6 +30,7 @@ pub fn bench(arguments: &Bench) -> Result<(), Failure> {
     let threads = machine::use_threads(arguments.manner.threads.map(usize::from))?;
     match arguments.subject {
         Subject::Swatch => swatch(arguments, threads),
+        Subject::Patterns => patterns(arguments, threads),
         Subject::Solver => solver(arguments, threads),
     }
 }
@@ -33,7 +39,7 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     let before = triad();
     let mut measured: Vec<Measured> = Vec::new();
     for part in PARTS {
-        measured.push(told(arguments, arguments.nodes / part, STEPS, LinearSolver::Automatic)?);
+        measured.push(told(arguments, "garter", arguments.nodes / part, STEPS, LinearSolver::Automatic)?);
     }
     let bandwidth = before.max(triad());
     let exponent = exponent(&measured);
@@ -64,11 +70,47 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     say!("the cost of a step grows as n^{exponent:.2}")
 }
 
+fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
+    let mut measured = Vec::new();
+    for pattern in PATTERNS {
+        let laid_out = lay_out(pattern, LOOPS)?;
+        measured.push((
+            pattern,
+            laid_out,
+            told(arguments, pattern, arguments.nodes / 3, STEPS, LinearSolver::Automatic)?,
+        ));
+    }
+    if arguments.json {
+        let list: Vec<_> = measured
+            .iter()
+            .map(|(pattern, (seconds, loops), swatch)| {
+                json!({ "pattern": pattern, "layout_loops": loops, "layout_s": seconds, "swatch": swatch })
+            })
+            .collect();
+        return output::json(&json!({ "threads": threads, "patterns": list }));
+    }
+    say!("swatches falling on a sphere, steps of 1 ms on {threads} threads:")?;
+    say!("  pattern                  nodes   node·steps/s   to garter   Newton   linear   layout of 100,000 loops")?;
+    let garter = measured[0].2.node_steps_per_s;
+    for (pattern, (seconds, loops), swatch) in &measured {
+        say!(
+            "  {pattern:<20} {:>9} {:>14} {:>11.2} {:>8.1} {:>8.1} {:>25}",
+            grouped(swatch.nodes as u64),
+            grouped(swatch.node_steps_per_s as u64),
+            swatch.node_steps_per_s / garter,
+            swatch.newton_iterations,
+            swatch.linear_iterations,
+            span(seconds * f64::from(LOOPS) / *loops as f64)
+        )?;
+    }
+    Ok(())
+}
+
 fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     let mut measured = Vec::new();
     for nodes in SOLVER_NODES {
-        let direct = told(arguments, nodes, SOLVER_STEPS, LinearSolver::Cholesky)?;
-        measured.push([direct, told(arguments, nodes, SOLVER_STEPS, LinearSolver::ConjugateGradient)?]);
+        let direct = told(arguments, "garter", nodes, SOLVER_STEPS, LinearSolver::Cholesky)?;
+        measured.push([direct, told(arguments, "garter", nodes, SOLVER_STEPS, LinearSolver::ConjugateGradient)?]);
     }
     if arguments.json {
         let sizes: Vec<_> = measured.iter().map(|[a, b]| json!({"cholesky": a, "conjugate_gradient": b})).collect();
@@ -89,11 +131,11 @@ fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 /// Measures a size, and says so.
-fn told(arguments: &Bench, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
+fn told(arguments: &Bench, pattern: &str, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
     if !arguments.manner.quiet {
-        note(&format!("garter swatch of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
+        note(&format!("{pattern} of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
     }
-    measure(nodes, steps, solver)
+    measure(pattern, nodes, steps, solver)
 }
 
 /// Slope of the logarithm of the cost over that of the size, from the smallest to the largest.
