@@ -67,6 +67,9 @@ impl Shape {
     }
 }
 
+/// Places that a loop's neighbour is looked for.
+const BEYOND: isize = 4;
+
 /// Middles of the loops, by row and column of the chart.
 struct LoopCentres {
     rows: usize,
@@ -100,10 +103,13 @@ impl LoopCentres {
         (0..self.rows).flat_map(move |row| (0..columns).map(move |column| (row, column)))
     }
 
+    /// Mean distance of a loop from the next one so many rows and columns on. Where that place has no loop of its own (a
+    /// yarn-over, a slip, a tuck) the next one beyond stands for it.
     fn mean_distance(&self, rows: isize, columns: isize) -> f64 {
         mean(self.places().filter_map(|(row, column)| {
             let (row, column) = (row as isize, column as isize);
-            Some(self.at(row, column)?.distance(self.at(row + rows, column + columns)?))
+            let here = self.at(row, column)?;
+            (1..=BEYOND).find_map(|k| Some(here.distance(self.at(row + k * rows, column + k * columns)?) / k as f64))
         }))
     }
 
