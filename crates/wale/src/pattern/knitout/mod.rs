@@ -1,4 +1,4 @@
-//! Knitout, the open format of machine knitting [Knitout2023], read to the graph of loops.
+//! Knitout, the open format of machine knitting [Knitout2023, version 0.6], read to the graph of loops.
 //!
 //! A program moves carriers along two beds of needles: `knit` draws a loop through those on a needle, `tuck` adds one,
 //! `split`, `xfer` and `drop` move and let go, `rack` shifts the back bed. Loops made on the front bed are knits as seen
