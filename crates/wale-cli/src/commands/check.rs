@@ -48,6 +48,9 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         1e3 * census.mass_kg
     )?;
     yarns_and_flaws(&census, arguments.longest_float)?;
+    for (line, what) in opened.scene.structure.remarks() {
+        say!("  line {line:<4} {what}")?;
+    }
     say!(
         "  run      {} s, {} frames, steps of at most {} ms",
         plan.duration,

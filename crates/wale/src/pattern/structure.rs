@@ -79,6 +79,15 @@ impl Structure {
         }
     }
 
+    /// What a program does that is unusual but can be knitted, with its line.
+    pub fn remarks(&self) -> impl Iterator<Item = (usize, &str)> {
+        let remarks = match self {
+            Self::Chart { .. } => &[][..],
+            Self::Machine(program) => &program.knitted.remarks,
+        };
+        remarks.iter().map(|remark| (remark.line, remark.what.as_str()))
+    }
+
     /// The network of its plain layout.
     #[must_use]
     pub fn network(&self, card: &FabricCard) -> Network {
