@@ -6,23 +6,14 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use wale::model::{LoopProportions, YarnCard};
 use wale::pattern::knit;
 use wale::pattern::knitout::read_knitout;
+use wale::scene::Scene;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let yarn = YarnCard {
-        linear_density: 3e-4,
-        radius: 5e-4,
-        stretch_stiffness: 0.5,
-        bending_stiffness: 8e-10,
-        friction_coefficient: 0.3,
-        mass_damping: 0.0,
-        stiffness_damping: 0.05,
-        plies: 2,
-        twist: 0.0,
-    };
-    let card = LoopProportions::default().card(&yarn, 9.5e-3);
+    // The fabric of the default yarn.
+    let scene = "schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = 1\nrows = 1\n";
+    let card = Scene::from_text(scene, "default")?.fabric;
     let mut files = Vec::new();
     for argument in std::env::args_os().skip(1).map(PathBuf::from) {
         if argument.is_dir() {

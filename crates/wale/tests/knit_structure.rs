@@ -1,27 +1,14 @@
 //! Invariants of knitted networks, whatever the chart and however it is worked.
 
+mod cards;
+
 use std::collections::BTreeSet;
 
+use cards::cards;
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, LoopProportions, Network, NodeId, PassKind, YarnCard, YarnId};
+use wale::model::{FabricCard, Network, NodeId, PassKind, YarnId};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::{Chart, Side, Working, knit};
-
-fn cards() -> (YarnCard, FabricCard) {
-    let yarn = YarnCard {
-        linear_density: 3e-4,
-        radius: 5e-4,
-        stretch_stiffness: 0.5,
-        bending_stiffness: 8e-10,
-        friction_coefficient: 0.3,
-        mass_damping: 0.0,
-        stiffness_damping: 0.05,
-        plies: 2,
-        twist: 0.0,
-    };
-    let card = LoopProportions::default().card(&yarn, 9.5e-3);
-    (yarn, card)
-}
 
 fn charts() -> Vec<Chart> {
     vec![

@@ -1,8 +1,10 @@
 //! Programs of knitting machines: every loop that they make is found again.
 
+mod cards;
+
 use std::path::{Path, PathBuf};
 
-use wale::model::{LoopProportions, YarnCard};
+use cards::cards;
 use wale::pattern::knit;
 use wale::pattern::knitout::read_knitout;
 
@@ -21,18 +23,7 @@ fn loops_written(text: &str) -> usize {
 
 fn check(path: &Path) {
     let text = std::fs::read_to_string(path).unwrap();
-    let yarn = YarnCard {
-        linear_density: 3e-4,
-        radius: 5e-4,
-        stretch_stiffness: 0.5,
-        bending_stiffness: 8e-10,
-        friction_coefficient: 0.3,
-        mass_damping: 0.0,
-        stiffness_damping: 0.05,
-        plies: 2,
-        twist: 0.0,
-    };
-    let card = LoopProportions::default().card(&yarn, 9.5e-3);
+    let (_, card) = cards();
     match read_knitout(&text) {
         Ok(knitted) => {
             assert_eq!(knitted.graph.loops.len(), loops_written(&text), "{}", path.display());

@@ -1,30 +1,17 @@
 //! Invariants of networks made of any stitches: increases, decreases, slips, tucks, several yarns, shaping.
 
+mod cards;
+
 use std::collections::BTreeMap;
 
+use cards::cards;
 use proptest::prelude::*;
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, LoopProportions, Network, NodeId, SegmentKind, YarnCard, YarnId};
+use wale::model::{Network, NodeId, SegmentKind, YarnId};
 use wale::pattern::loops::{Form, Form2d, LoopGraph, Onward, Stop};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::work::{work, work_tile};
 use wale::pattern::{Chart, Side, Stitch, Working, knit};
-
-fn cards() -> (YarnCard, FabricCard) {
-    let yarn = YarnCard {
-        linear_density: 3e-4,
-        radius: 5e-4,
-        stretch_stiffness: 0.5,
-        bending_stiffness: 8e-10,
-        friction_coefficient: 0.3,
-        mass_damping: 0.0,
-        stiffness_damping: 0.05,
-        plies: 2,
-        twist: 0.0,
-    };
-    let card = LoopProportions::default().card(&yarn, 9.5e-3);
-    (yarn, card)
-}
 
 fn workings() -> [Working; 3] {
     [Working::Flat { first_row: Side::RightSide }, Working::Flat { first_row: Side::WrongSide }, Working::Round]

@@ -15,6 +15,8 @@ impl Chart {
     pub fn repeat(&self, columns: usize, rows: usize) -> Result<Self, ChartError> {
         Self::check_size(columns as u64, rows as u64)?;
         let (first, last) = (self.cast_on(), leaves(&self.rows()[self.row_count() - 1]));
+        // Increases make rows longer than what is cast on.
+        Self::check_size((self.column_count() as u64).saturating_mul((columns / first) as u64).max(1), rows as u64)?;
         if rows > self.row_count() && first != last {
             return Err(ChartError::Shaped { first, last });
         }

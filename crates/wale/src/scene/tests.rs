@@ -159,6 +159,11 @@ fn a_machines_program_is_a_fabric() {
     assert_eq!(resolved_again(&read.scene), read.scene, "the program goes along");
     let error = scene_with("file = \"two.k\"\ncolumns = 3").unwrap_err().to_string();
     assert!(error.contains("columns beside a program"), "{error}");
+    let image = crate::picture::Image { width: 1, height: 1, pixels: vec![[255; 3]] };
+    crate::picture::write_png(&image, std::fs::File::create(folder.path().join("one.png")).unwrap()).unwrap();
+    let beside = "file = \"two.k\"\nimage = \"one.png\"\npalette = { \"#ffffff\" = \"A\" }";
+    let error = scene_with(beside).unwrap_err().to_string();
+    assert!(error.contains("image beside a program"), "{error}");
     std::fs::write(folder.path().join("two.k"), program.replace("in 2\n", "")).unwrap();
     let error = scene_with("file = \"two.k\"").unwrap_err();
     assert!(error.to_string().contains("line 6: carrier 2 makes a loop but was not brought in"), "{error}");

@@ -28,7 +28,6 @@ struct Made {
 
 /// A yarn that is in.
 struct Fed {
-    since: usize,
     loops: Path,
 }
 
@@ -293,8 +292,7 @@ impl Machine {
         let over = last.map_or(0, |last| self.between(last.x, x, needle.bed));
         let id = self.made.len();
         self.made.push(Made { form, bed: needle.bed, x, row, parents, rightward, place: place.clone() });
-        let fed = self.fed.entry(carriers.to_vec()).or_insert_with(|| Fed { since: place.line, loops: Vec::new() });
-        debug_assert!(fed.since <= place.line);
+        let fed = self.fed.entry(carriers.to_vec()).or_insert_with(|| Fed { loops: Vec::new() });
         fed.loops.push((id, over));
         Ok(id)
     }

@@ -105,6 +105,7 @@ fn machine(text: &ChartText, program: Program, inputs: Vec<PathBuf>) -> Result<S
         ("stripes", text.stripes.is_some()),
         ("yarns", text.yarns.is_some()),
         ("legend", text.legend.is_some()),
+        ("image", text.image.is_some()),
     ];
     if let Some((key, _)) = beside.iter().find(|(_, given)| *given) {
         let complaint = Complaint::new(format!("{HERE}.{key}"), format!("{key} beside a program in knitout"));

@@ -105,12 +105,8 @@ impl<'de> Deserialize<'de> for Color {
                 f.write_str("a colour such as \"#8a3324\"")
             }
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Color, E> {
-                let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii());
-                let byte = |at: usize| u8::from_str_radix(digits?.get(at..at + 2)?, 16).ok();
-                match (byte(0), byte(2), byte(4)) {
-                    (Some(r), Some(g), Some(b)) => Ok(Color([r, g, b])),
-                    _ => Err(E::custom("this is no colour\nwrite six hexadecimal digits, as in \"#8a3324\"")),
-                }
+                let no_color = || E::custom("this is no colour\nwrite six hexadecimal digits, as in \"#8a3324\"");
+                crate::pattern::image::color(text).map(Color).ok_or_else(no_color)
             }
         }
         deserializer.deserialize_any(Visitor)
