@@ -41,6 +41,13 @@ impl Estimate {
         Self::of_nodes(NODES_A_LOOP * rows * columns + NODES_AN_EDGE_LOOP * (rows + columns), solver)
     }
 
+    /// For a weave of so many picks and ends: a node a crossing, and the ends of the yarns.
+    #[must_use]
+    pub fn of_draft(picks: u64, ends: u64, solver: LinearSolver) -> Self {
+        let (picks, ends) = (picks as f64, ends as f64);
+        Self::of_nodes(picks * ends + NODES_AN_EDGE_LOOP * (picks + ends), solver)
+    }
+
     fn of_nodes(nodes: f64, solver: LinearSolver) -> Self {
         let linear = |bytes_a_node: f64| (bytes_a_node * nodes) as u64;
         let direct = match solver {

@@ -58,7 +58,11 @@ impl OpenedScene {
     #[must_use]
     pub fn estimate(&self) -> Estimate {
         let [rows, columns] = self.chart_size();
-        Estimate::of_chart(rows, columns, self.scene.plan.simulation.linear_solver)
+        let solver = self.scene.plan.simulation.linear_solver;
+        match self.scene.structure.woven() {
+            Some(_) => Estimate::of_draft(rows, columns, solver),
+            None => Estimate::of_chart(rows, columns, solver),
+        }
     }
 
     /// The fabric as its chart lays it out, without compensation: quick, and enough to count.
@@ -70,8 +74,8 @@ impl OpenedScene {
     /// The fabric before it is placed, and what rest-shape compensation did to it.
     #[must_use]
     pub fn start(&self) -> Start {
-        let Scene { structure, yarn, fabric, plan, .. } = &self.scene;
-        let mut start = Start::new(structure, yarn, fabric, plan.simulation.rest_shape_compensation);
+        let Scene { structure, yarns, fabric, plan, .. } = &self.scene;
+        let mut start = Start::new(structure, yarns, fabric, plan.simulation.rest_shape_compensation);
         self.scene.color_yarns(&mut start.network);
         start
     }
@@ -79,7 +83,7 @@ impl OpenedScene {
     /// Sets up the simulation.
     #[must_use]
     pub fn simulation(&self) -> Simulation {
-        Simulation::new(self.start().network, &self.scene.yarn, &self.scene.fabric, self.scene.plan.clone())
+        Simulation::new(self.start().network, &self.scene.yarns, &self.scene.fabric, self.scene.plan.clone())
     }
 
     /// Starts as many threads as the command line or else the scene asks for, and says how many there are.
@@ -158,7 +162,7 @@ impl OpenedRun {
     /// How the yarns are drawn.
     #[must_use]
     pub fn curve_settings(&self) -> CurveSettings {
-        CurveSettings::new(self.scene.yarn.radius)
+        CurveSettings::of(&self.scene.yarns, &self.scene.fabric)
     }
 
     /// The yarns of a frame.

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use wale::measure::{Census, Shape};
-use wale::model::{FabricCard, YarnCard};
+use wale::model::{FabricCard, Yarns};
 use wale::record::{RecordError, RunFolder, Status};
 use wale::simulation::{Simulation, StepReport};
 
@@ -23,8 +23,8 @@ pub struct RunLoop {
     pub simulation: Simulation,
     /// Where it is written.
     pub run: RunFolder,
-    /// The yarn.
-    pub yarn: YarnCard,
+    /// The yarns.
+    pub yarns: Yarns,
     /// The fabric card.
     pub card: FabricCard,
     /// Flags of the operating system's signals.
@@ -145,7 +145,7 @@ impl RunLoop {
     fn summary(&mut self, seconds: f64, steps: u64) -> Value {
         let report = self.simulation.standing();
         let network = self.simulation.network();
-        let census = Census::of(network, &self.yarn, &self.card);
+        let census = Census::of(network, &self.yarns, &self.card);
         let shape = Shape::of(network, &self.simulation.frame());
         let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
         let grips: Vec<Value> = report

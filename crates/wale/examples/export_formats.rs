@@ -10,7 +10,7 @@ use wale::dynamics::tile_equilibrium::{TileSettings, relax_tile};
 use wale::export::{Format, FrameSnapshots, Settings, Snapshot, write};
 use wale::fabric::TileCoordinates;
 use wale::geometry::CurveSettings;
-use wale::model::{FabricCard, Frame, Network, YarnCard};
+use wale::model::{Frame, KnitCard, Network, YarnCard};
 use wale::pattern::{Chart, Working, knit};
 
 const LOOP: f64 = 10e-3;
@@ -62,7 +62,7 @@ fn rolled(network: &Network, time: f64) -> Frame {
 }
 
 /// A relaxed tile, laid out a few times along course and wale.
-fn relaxed(chart: &Chart, yarn: &YarnCard, card: &FabricCard) -> Snapshot {
+fn relaxed(chart: &Chart, yarn: &YarnCard, card: &KnitCard) -> Snapshot {
     let network = knit::tile(chart, card).expect("the repeat has no end");
     let rest = relax_tile(&network, yarn, card, &TileSettings::default());
     let periods = [
@@ -85,7 +85,7 @@ fn relaxed(chart: &Chart, yarn: &YarnCard, card: &FabricCard) -> Snapshot {
 }
 
 /// A soft wool: weak wrap, rest bend angles by pass.
-fn cards() -> (YarnCard, FabricCard) {
+fn cards() -> (YarnCard, KnitCard) {
     let bending = 1e-9;
     let force = bending / (LOOP * LOOP);
     let stitch = 0.107 * LOOP;
@@ -100,7 +100,7 @@ fn cards() -> (YarnCard, FabricCard) {
         plies: 2,
         twist: 250.0,
     };
-    let card = FabricCard {
+    let card = KnitCard {
         loop_length: LOOP,
         path_ratio: 1.0,
         transition_length: 0.085,

@@ -30,7 +30,7 @@ fn main() -> ExitCode {
 fn run(path: &str, until: f64) -> Result<(), Box<dyn std::error::Error>> {
     let text = std::fs::read_to_string(path)?;
     let scene = Scene::from_text(&text, path)?;
-    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
     let simulation = |iterations: Option<u32>, solver: LinearSolver, tolerance: f64| {
         let mut plan = scene.plan.clone();
         if let Some(iterations) = iterations {
@@ -39,14 +39,14 @@ fn run(path: &str, until: f64) -> Result<(), Box<dyn std::error::Error>> {
             plan.simulation.linear_solver = solver;
             plan.simulation.linear_tolerance = tolerance;
         }
-        Simulation::new(start.network.clone(), &scene.yarn, &scene.fabric, plan)
+        Simulation::new(start.network.clone(), &scene.yarns, &scene.fabric, plan)
     };
     let mut before = simulation(None, LinearSolver::Automatic, 0.0);
     while before.state().time < until {
         before.step()?;
     }
     let nodes = before.network().node_count();
-    let radius = scene.yarn.radius;
+    let radius = scene.yarns.first().radius;
     println!("{path}: {nodes} nodes, one step from {:.3} s; errors in yarn radii", before.state().time);
     println!("                         0.001            0.03                 0.1                 0.3");
     println!("iterations      mean   largest      mean   largest      mean   largest      mean   largest");

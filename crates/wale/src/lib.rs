@@ -18,8 +18,8 @@
 //!     rows = 4
 //! ";
 //! let scene = Scene::from_text(text, "swatch.toml")?;
-//! let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, false);
-//! let mut simulation = Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone());
+//! let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, false);
+//! let mut simulation = Simulation::new(start.network, &scene.yarns, &scene.fabric, scene.plan.clone());
 //! let report = simulation.step()?;
 //! assert!(report.time > 0.0 && report.largest_stretch < 1.1);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

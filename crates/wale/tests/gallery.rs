@@ -26,8 +26,8 @@ fn play(name: &str) -> Played {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let scene = Scene::read(&path).unwrap();
     let compensate = scene.plan.simulation.rest_shape_compensation;
-    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, compensate);
-    let mut simulation = Simulation::new(start.network.clone(), &scene.yarn, &scene.fabric, scene.plan.clone());
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, compensate);
+    let mut simulation = Simulation::new(start.network.clone(), &scene.yarns, &scene.fabric, scene.plan.clone());
     let first = Shape::of(simulation.network(), &simulation.frame());
     let mut steps = Vec::new();
     while !simulation.finished() {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use cards::cards;
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, Network, NodeId, PassKind, YarnId};
+use wale::model::{KnitCard, Network, NodeId, PassKind, YarnId};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::{Chart, Side, Working, knit};
 
@@ -200,7 +200,7 @@ fn the_way_a_row_is_worked_does_not_show() {
     check_both_ways(&lace(), &card);
 }
 
-fn check_both_ways(chart: &Chart, card: &FabricCard) {
+fn check_both_ways(chart: &Chart, card: &KnitCard) {
     let [a, b, _] = workings().map(|working| joined(&knit::fabric(chart, working, card)));
     assert_eq!(a, b);
 }

@@ -15,8 +15,8 @@ fn scene(text: &str) -> Scene {
 }
 
 fn simulation(scene: &Scene) -> Simulation {
-    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
-    Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone())
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
+    Simulation::new(start.network, &scene.yarns, &scene.fabric, scene.plan.clone())
 }
 
 /// Angular momentum and moment of inertia about z, each node of mass one.
@@ -41,8 +41,8 @@ fn a_turning_fabric_keeps_turning() {
     let spins = |damping: f64| {
         let mut scene =
             scene("pattern = \"garter\"\ncolumns = 8\nrows = 8\n[simulation]\ngravity = 0\nlargest_step = \"1 ms\"");
-        scene.yarn.stiffness_damping = damping;
-        scene.yarn.mass_damping = 0.0;
+        scene.yarns.first_mut().stiffness_damping = damping;
+        scene.yarns.first_mut().mass_damping = 0.0;
         let mut simulation = simulation(&scene);
         let network = simulation.network().clone();
         // The layout first finds its own shape: snaps of whole loops in a step are another matter.
@@ -76,7 +76,7 @@ fn a_free_fabric_falls_as_a_stone() {
     let run = |gravity: f64| {
         let mut scene =
             scene("pattern = \"stockinette\"\ncolumns = 6\nrows = 6\n[simulation]\nlargest_step = \"1 ms\"");
-        scene.yarn.mass_damping = 0.0;
+        scene.yarns.first_mut().mass_damping = 0.0;
         // The layout first finds its own shape.
         scene.plan.simulation.gravity = DVec3::ZERO;
         let mut settled = simulation(&scene);

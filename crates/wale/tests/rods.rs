@@ -38,7 +38,7 @@ fn elastica() {
             let step = LENGTH / segments as f64;
             let free = LENGTH - 0.5 * step;
             let mut simulation = simulation(segments, |scene| {
-                scene.yarn.mass_damping = 5.0;
+                scene.yarns.first_mut().mass_damping = 5.0;
                 scene.plan.simulation.largest_step = 0.5;
                 scene.plan.simulation.frame_rate = 1.0;
                 scene.plan.simulation.duration = 100.0;
@@ -189,7 +189,7 @@ fn a_rod_buckles_at_euler_s_load() {
         let free = LENGTH - 0.5 * step;
         let critical = std::f64::consts::PI.powi(2) * EI / (4.0 * free * free);
         let mut simulation = simulation(segments, |scene| {
-            scene.yarn.mass_damping = 5.0;
+            scene.yarns.first_mut().mass_damping = 5.0;
             scene.plan.simulation.largest_step = 1.0;
             scene.plan.simulation.frame_rate = 1.0;
             scene.plan.simulation.duration = 2000.0;
@@ -213,7 +213,7 @@ fn a_chain_hangs_and_swings_as_it_should() {
     for expected in [1.202_413, 2.760_039] {
         let errors = SEGMENTS.map(|segments| {
             let mut simulation = simulation(segments, |scene| {
-                scene.yarn.bending_stiffness = 1e-13;
+                scene.yarns.first_mut().bending_stiffness = 1e-13;
                 scene.plan.simulation.gravity = DVec3::X * 9.81;
                 scene.plan.simulation.largest_step = 6e-2 / segments as f64 / expected;
                 scene.plan.simulation.frame_rate = 1.0;
@@ -280,7 +280,7 @@ fn bends_of_a_circle_hold_the_moment_of_a_rod() {
             }
             let places = network.position.clone();
             let mut simulation = rod::yarns(network, |scene| {
-                scene.yarn.mass_damping = 5.0;
+                scene.yarns.first_mut().mass_damping = 5.0;
                 scene.plan.simulation.largest_step = 0.05;
                 scene.plan.simulation.frame_rate = 1.0;
                 scene.plan.simulation.duration = 100.0;

@@ -32,8 +32,8 @@ fn a_rope_runs_over_frictionless_pegs() {
         };
         let network = rod::network(places.clone(), &[yarn]);
         let mut simulation = rod::yarns(network, |scene| {
-            scene.yarn.bending_stiffness = 1e-12;
-            scene.yarn.stretch_stiffness = 1e4;
+            scene.yarns.first_mut().bending_stiffness = 1e-12;
+            scene.yarns.first_mut().stretch_stiffness = 1e4;
             scene.plan.simulation.gravity = DVec3::NEG_Z * 9.81;
             scene.plan.simulation.largest_step = step;
             scene.plan.simulation.frame_rate = 10.0;
@@ -93,11 +93,11 @@ fn a_belt_pulled_over_pegs_has_the_capstan_ratio() {
         let held: Vec<DVec3> = places[count + 2..].to_vec();
         let ends = [places[0], places[count + 1]];
         let mut simulation = rod::yarns(rod::network(places, &yarns), |scene| {
-            scene.yarn.bending_stiffness = 1e-13;
-            scene.yarn.stretch_stiffness = 10.0;
-            scene.yarn.friction_coefficient = mu;
-            scene.yarn.mass_damping = 20.0;
-            scene.fabric.residual_compression = 0.0;
+            scene.yarns.first_mut().bending_stiffness = 1e-13;
+            scene.yarns.first_mut().stretch_stiffness = 10.0;
+            scene.yarns.first_mut().friction_coefficient = mu;
+            scene.yarns.first_mut().mass_damping = 20.0;
+            scene.fabric.knit_mut().unwrap().residual_compression = 0.0;
             // Steps of one length: shorter ones show pegs and belt swinging.
             scene.plan.simulation.smallest_step = 9e-4;
             scene.plan.simulation.largest_step = 1e-3;

@@ -10,8 +10,8 @@ fn garter(side: u32, settings: &str) -> Simulation {
          [simulation]\nrelax_first = false\n{settings}\n[[obstacle]]\nsphere = {{ center = [0, 0, 0], radius = 0.02 }}\n"
     );
     let scene = Scene::from_text(&text, "test").unwrap();
-    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
-    Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan)
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
+    Simulation::new(start.network, &scene.yarns, &scene.fabric, scene.plan)
 }
 
 #[test]

@@ -149,8 +149,8 @@ fn scene(pattern: &str, nodes: u32) -> Result<Scene, Failure> {
 }
 
 fn simulation(scene: &Scene) -> Simulation {
-    let start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
-    Simulation::new(start.network, &scene.yarn, &scene.fabric, scene.plan.clone())
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
+    Simulation::new(start.network, &scene.yarns, &scene.fabric, scene.plan.clone())
 }
 
 fn step(simulation: &mut Simulation) -> Result<wale::simulation::StepReport, Failure> {

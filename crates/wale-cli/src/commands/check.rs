@@ -20,7 +20,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     opened.check_memory(arguments.limits.max_memory)?;
     let [rows, columns] = opened.chart_size();
     let estimate = opened.estimate();
-    let census = Census::of(&opened.plain_network(), &opened.scene.yarn, &opened.scene.fabric);
+    let census = Census::of(&opened.plain_network(), &opened.scene.yarns, &opened.scene.fabric);
     let plan = &opened.scene.plan.simulation;
     let frames = (plan.duration * plan.frame_rate + 1e-6).floor() as u64 + 1;
     let frame_bytes = Frames::byte_count(census.nodes, census.passes);
@@ -39,7 +39,12 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         }));
     }
     say!("{}: sound", arguments.scene.display())?;
-    say!("  chart    {rows} rows, {columns} columns, {} loops", grouped(census.loops as u64))?;
+    let cells = grouped(census.loops as u64);
+    if opened.scene.structure.woven().is_some() {
+        say!("  draft    {columns} ends, {rows} picks, {cells} crossings")?;
+    } else {
+        say!("  chart    {rows} rows, {columns} columns, {cells} loops")?;
+    }
     say!(
         "  fabric   {} nodes, {} degrees of freedom, {:.2} m of yarn, {:.2} g",
         grouped(census.nodes as u64),

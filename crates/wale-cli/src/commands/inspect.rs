@@ -28,7 +28,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         run = None;
         scene = opened.scene;
     }
-    let census = Census::of(&network, &scene.yarn, &scene.fabric);
+    let census = Census::of(&network, &scene.yarns, &scene.fabric);
     let shape = Shape::of(&network, &frame);
     let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
     if arguments.json {
@@ -48,13 +48,19 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         let text = |key: &str| run[key].as_str().unwrap_or_default().to_owned();
         say!("  run      {}, {} frames, last at {} s", text("status"), run["frames"], run["time_s"])?;
     }
-    say!(
-        "  loops    {} ({} rows, {} columns; {} knit as seen from the front)",
-        grouped(census.loops as u64),
-        census.rows,
-        census.columns,
-        grouped(census.knit_loops as u64)
-    )?;
+    let (rows, columns) = (census.rows, census.columns);
+    if let Some(card) = scene.fabric.woven() {
+        let up = 100.0 * census.knit_loops as f64 / census.loops.max(1) as f64;
+        say!("  threads  {columns} ends, {rows} picks; the warp lies on top at {up:.0} % of the crossings")?;
+        let [warp, weft] = card.crimp.map(|crimp| 100.0 * crimp);
+        say!("  crimp    {warp:.2} % of the warp, {weft:.2} % of the weft")?;
+    } else {
+        say!(
+            "  loops    {} ({rows} rows, {columns} columns; {} knit as seen from the front)",
+            grouped(census.loops as u64),
+            grouped(census.knit_loops as u64)
+        )?;
+    }
     say!("  nodes    {}", grouped(census.nodes as u64))?;
     for (size, count) in census.nodes_by_stack_size.iter().enumerate().filter(|(_, count)| **count > 0) {
         say!("             {:>9}  with a stack of {size}", grouped(*count as u64))?;
@@ -69,8 +75,12 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     yarns_and_flaws(&census, arguments.longest_float)?;
     let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
     say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
+    let [cell, cells] = match scene.fabric.woven() {
+        Some(_) => ["crossing", "crossings"],
+        None => ["stitch  ", "loops"],
+    };
     say!(
-        "  stitch   {:.2} mm wide, {:.2} mm high, {:.2} loops/cm²",
+        "  {cell} {:.2} mm wide, {:.2} mm high, {:.2} {cells}/cm²",
         1e3 * shape.wale_spacing_m,
         1e3 * shape.course_spacing_m,
         1e-4 * shape.stitch_density_per_m2
@@ -87,7 +97,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
 pub fn yarns_and_flaws(census: &Census, longest_float: u32) -> Result<(), Failure> {
     if census.yarn_lengths_m.len() > 1 {
         for (at, length) in census.yarn_lengths_m.iter().enumerate() {
-            let mass = 1e3 * census.mass_kg * length / census.yarn_length_m;
+            let mass = 1e3 * census.yarn_masses_kg[at];
             say!("             {length:>8.3} m, {mass:.3} g of yarn {}", at + 1)?;
         }
     }

@@ -36,11 +36,11 @@ pub fn draw(names: &[String], folder: &Path) -> Result<(), Failure> {
             PIECE[1].next_multiple_of(rows),
         );
         let scene = Scene::from_text(&scene, name).map_err(|error| Failure::new(Code::Bug, error))?;
-        let mut start = Start::new(&scene.structure, &scene.yarn, &scene.fabric, true);
+        let mut start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
         scene.color_yarns(&mut start.network);
         let network = start.network;
         let frame = Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() };
-        let curves = curves(&network, &frame, &CurveSettings::new(scene.yarn.radius));
+        let curves = curves(&network, &frame, &CurveSettings::of(&scene.yarns, &scene.fabric));
         let subject = Subject { curves: &curves, scalars: None, solids: &[] };
         let (points, radius) = subject.extent_points();
         let [width, height] = SIZE;
@@ -49,8 +49,8 @@ pub fn draw(names: &[String], folder: &Path) -> Result<(), Failure> {
         let settings = Settings {
             width,
             height,
-            plies: scene.yarn.plies,
-            twist: scene.yarn.twist,
+            plies: scene.yarns.first().plies,
+            twist: scene.yarns.first().twist,
             scale_bar: false,
             ..Settings::default()
         };

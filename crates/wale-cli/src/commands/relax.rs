@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use serde_json::json;
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
+use wale::measure::Census;
 use wale::pattern::knit;
 
 use crate::arguments::Relax;
@@ -16,12 +17,12 @@ const MOST_LOOPS: usize = 400;
 /// Relaxes it.
 pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     let opened = OpenedScene::read(&arguments.scene)?;
-    let (yarn, card) = (&opened.scene.yarn, &opened.scene.fabric);
-    let Some(chart) = opened.scene.structure.chart() else {
+    let yarns = &opened.scene.yarns;
+    let (Some(chart), Some(card)) = (opened.scene.structure.chart(), opened.scene.fabric.knit()) else {
         return Err(Failure::new(
             Code::BadInput,
             format_args!(
-                "{}: a machine's program has no repeat to relax; set relax_first in its scene",
+                "{}: only the repeat of a chart can be relaxed; set relax_first in its scene",
                 arguments.scene.display()
             ),
         ));
@@ -43,7 +44,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
         .into_par_iter()
         .map(|seed| {
             let settings = TileSettings { seed, bed: arguments.bed, ..TileSettings::default() };
-            (seed, relax_tile(&tile, yarn, card, &settings))
+            (seed, relax_tile(&tile, yarns, card, &settings))
         })
         .collect();
     // The lowest energy is the one that a swatch shaken long enough would find.
@@ -64,8 +65,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     }
     let (width, height) = (best.wale_spacing, best.course_spacing);
     let density = 1.0 / (width * height);
-    let loop_yarn = tile.yarn_length() / card.path_ratio / loops as f64;
-    let areal_mass = loop_yarn * yarn.linear_density * density;
+    let areal_mass = Census::of(&tile, yarns, card).areal_mass(density);
     if arguments.json {
         return output::json(&json!({
             "scene": arguments.scene,

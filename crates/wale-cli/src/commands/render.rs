@@ -40,8 +40,8 @@ pub fn draw_frames(arguments: &Render) -> Result<Vec<PathBuf>, Failure> {
         width,
         height,
         color_mode: arguments.color,
-        plies: run.scene.yarn.plies,
-        twist: run.scene.yarn.twist,
+        plies: run.scene.yarns.first().plies,
+        twist: run.scene.yarns.first().twist,
         ground: Some(view.ground_normal()),
         ..Settings::default()
     };

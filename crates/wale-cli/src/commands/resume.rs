@@ -42,6 +42,6 @@ pub fn resume(arguments: &Resume) -> Result<(), Failure> {
         ));
     }
     let run = interrupted.resume(&columns)?;
-    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
-    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
+    let (yarns, card) = (scene.scene.yarns, scene.scene.fabric);
+    RunLoop { simulation, run, yarns, card, signals, quiet: arguments.manner.quiet }.go()
 }

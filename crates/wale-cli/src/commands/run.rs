@@ -46,8 +46,8 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
             out.display()
         ));
     }
-    let (yarn, card) = (scene.scene.yarn, scene.scene.fabric);
-    RunLoop { simulation, run, yarn, card, signals, quiet: arguments.manner.quiet }.go()
+    let (yarns, card) = (scene.scene.yarns, scene.scene.fabric);
+    RunLoop { simulation, run, yarns, card, signals, quiet: arguments.manner.quiet }.go()
 }
 
 /// `scenes/swatch.toml` runs into `swatch.run` where the program was called.

@@ -31,8 +31,12 @@ pub fn write_page(arguments: &View) -> Result<PathBuf, Failure> {
         let scalars = point_scalars(&run.network, &frame, &curves);
         frames.push(ViewFrame { time: frame.time, solids: run.solids(&frame), curves, scalars });
     }
-    let data =
-        ViewData { title: run.scene.title.clone(), frames, plies: run.scene.yarn.plies, twist: run.scene.yarn.twist };
+    let data = ViewData {
+        title: run.scene.title.clone(),
+        frames,
+        plies: run.scene.yarns.first().plies,
+        twist: run.scene.yarns.first().twist,
+    };
     let mut refused = None;
     let written = write_atomically(&path, |out| match write_html(&data, &ViewSettings::default(), out) {
         Ok(()) => Ok(()),

@@ -1,11 +1,13 @@
 //! How hard the yarns of a contact node press on each other.
 
+use glam::DVec3;
 use rayon::prelude::*;
-use wale_numerics::jet::vector3::{add, dot, scale, sub};
+use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
 
 use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
-use crate::model::{Network, NodeId, PassId, SegmentKind};
+use crate::fabric::mechanics::chain_stiffness;
+use crate::model::{FabricCard, Network, NodeId, PassId, SegmentKind, YarnCard, YarnRole, Yarns};
 
 /// Compression of contact nodes from the tension of their yarns.
 ///
@@ -20,10 +22,16 @@ use crate::model::{Network, NodeId, PassId, SegmentKind};
 /// by their radii. For clasped yarns the resultant needs no normal, has no sign to choose, and gives the capstan
 /// law (tests `capstan`, `a_belt_pulled_over_pegs_has_the_capstan_ratio`). Its Eq. 4, which sets negative compressions to
 /// zero one by one, is not the least-squares answer (test `stacks_press_by_least_squares`).
+///
+/// The yarns of a weave are straight in the model and crimped in the fabric: a segment of length `l` and tension `T`
+/// between crossings on different sides goes through the fabric by the crimp height `h`, so that it presses its yarn on the
+/// other with `T h/l` besides (test `crimp_presses_a_flat_weave`).
 #[derive(Clone, Debug, Default)]
 pub struct Compression {
-    /// The two passes of each two-pass node.
-    contacts: Vec<[Neighbours; 2]>,
+    /// The yarns by what they are made of and how they run.
+    strands: Vec<Strand>,
+    /// The nodes of two passes.
+    contacts: Vec<Contact>,
     /// Nodes of more yarns.
     stacks: Vec<Stack>,
     /// Number of contacts between neighbours of the stacks.
@@ -32,6 +40,24 @@ pub struct Compression {
     contact_of: Vec<Option<u32>>,
     /// Contacts of parallel yarns: contact, the pass nearer to the loop that was worked, and the one beyond it.
     parallel: Vec<(usize, [PassId; 2])>,
+}
+
+/// What a yarn pulls with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Strand {
+    /// Its stretch stiffness, and that of a cast-on or bind-off of it \[N\].
+    stiffness: [f64; 2],
+    /// Crimp height where it interlaces \[m\].
+    crimp_height: f64,
+}
+
+/// The passes of a node of two yarns.
+#[derive(Clone, Copy, Debug)]
+struct Contact {
+    yarns: [Neighbours; 2],
+    /// Of crossings in a weave: the sign with which the cross product of the yarns' directions points from the second to
+    /// the first.
+    side: Option<f64>,
 }
 
 /// Most yarns of a stack.
@@ -52,31 +78,53 @@ struct Neighbours {
     slot: [u32; 3],
     /// Whether the segment before and the one after is a chain of loops drawn as one strand.
     chain: [bool; 2],
+    /// Whether they go to the other side of the fabric.
+    interlaces: [bool; 2],
+    strand: u16,
 }
 
 impl Compression {
-    /// Finds the two-yarn contacts of a network.
+    /// Finds the contacts of a network.
     #[must_use]
-    pub fn new(network: &Network, coordinates: &Coordinates) -> Self {
+    pub fn new(network: &Network, yarns: &Yarns, card: &FabricCard, coordinates: &Coordinates) -> Self {
         let yarn_of = network.pass_yarn();
+        let mut strands = Vec::new();
+        let strand_of: Vec<u16> = (0..network.yarn_count())
+            .map(|yarn| {
+                let strand = strand(yarns.of(network.yarn_kind[yarn]), network.yarn_role[yarn], card);
+                let known = strands.iter().position(|known| *known == strand);
+                known.unwrap_or_else(|| {
+                    strands.push(strand);
+                    strands.len() - 1
+                }) as u16
+            })
+            .collect();
         let of = |pass: PassId| {
-            let ends = [-1, 0, 1].map(|step| {
-                network.neighbour(yarn_of[pass.index()], pass, step).map_or(pass, |neighbour| neighbour.pass)
-            });
-            let chain = [ends[0], pass].map(|p| network.segment_kind[p.index()] == SegmentKind::Chain);
+            let yarn = yarn_of[pass.index()];
+            let ends =
+                [-1, 0, 1].map(|step| network.neighbour(yarn, pass, step).map_or(pass, |neighbour| neighbour.pass));
+            let are = |kind| [ends[0], pass].map(|p| network.segment_kind[p.index()] == kind);
             Neighbours {
-                chain,
+                chain: are(SegmentKind::Chain),
+                interlaces: are(SegmentKind::Interlacing),
+                strand: strand_of[yarn.index()],
                 block: ends.map(|p| network.pass_node[p.index()].0),
                 slot: ends.map(|p| coordinates.slot(p) as u32),
             }
         };
-        let mut compression = Self { contact_of: vec![None; network.pass_count()], ..Self::default() };
+        let mut side: Vec<Option<f64>> = vec![None; network.node_count()];
+        for crossing in &network.crossings {
+            let node = crossing.node.index();
+            let [front, back] = [0, 1].map(|k| of(network.stack(crossing.node)[k]).direction(&network.position));
+            side[node] = Some(front.cross(back).dot(network.front[node]).signum());
+        }
+        let mut compression = Self { strands, contact_of: vec![None; network.pass_count()], ..Self::default() };
         let mut deeper = Vec::new();
         for node in 0..network.node_count() {
             match *network.stack(NodeId::new(node)) {
                 [a, b] => {
                     let index = compression.contacts.len() as u32;
-                    compression.contacts.push([of(a), of(b)]);
+                    compression.contacts.push(Contact { yarns: [of(a), of(b)], side: side[node] });
                     compression.contact_of[a.index()] = Some(index);
                     compression.contact_of[b.index()] = Some(index);
                 }
@@ -128,45 +176,60 @@ impl Compression {
         self.len() == 0
     }
 
-    /// Compressions `λ` \[N\], one per contact, of a fabric at `q` whose yarn, and whose cast-on and bind-off, have these
-    /// stretch stiffnesses \[N\].
-    pub fn evaluate(&self, q: &[f64], stiffness: [f64; 2], out: &mut Vec<f64>) {
+    /// Compressions `λ` \[N\], one per contact, of a fabric at `q`.
+    pub fn evaluate(&self, q: &[f64], out: &mut Vec<f64>) {
         out.resize(self.len(), 0.0);
         let (pairs, mut stacked) = out.split_at_mut(self.contacts.len());
         for stack in &self.stacks {
             let (own, rest) = stacked.split_at_mut(stack.count - 1);
-            stack.press(q, stiffness, own);
+            stack.press(q, &self.strands, own);
             stacked = rest;
         }
-        pairs.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, [a, b])| {
-            let ((fa, ta), (fb, tb)) = (a.pull(q, stiffness), b.pull(q, stiffness));
-            let across = across_both(sub(fa, fb), ta, tb);
+        pairs.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, contact)| {
+            let [a, b] = contact.yarns.map(|yarn| yarn.pull(q, &self.strands));
+            let mut across = across_both(sub(a.force, b.force), a.along, b.along);
+            if let Some(side) = contact.side {
+                let normal = cross(a.along, b.along);
+                let length = dot(normal, normal).sqrt();
+                if length > 0.0 {
+                    across = sub(across, scale(normal, side / length * (a.crimp + b.crimp)));
+                }
+            }
             *lambda = 0.5 * dot(across, across).sqrt();
         });
     }
 }
 
+/// What a yarn pulls with.
+fn strand(yarn: &YarnCard, role: YarnRole, card: &FabricCard) -> Strand {
+    match card {
+        FabricCard::Knit(card) => {
+            Strand { stiffness: [yarn.stretch_stiffness, chain_stiffness(yarn, card)], crimp_height: 0.0 }
+        }
+        FabricCard::Woven(card) => Strand {
+            stiffness: [yarn.stretch_stiffness; 2],
+            crimp_height: card.crimp_height[usize::from(role == YarnRole::Weft)],
+        },
+    }
+}
+
 impl Stack {
-    fn press(&self, q: &[f64], stiffness: [f64; 2], lambda: &mut [f64]) {
-        let pulls = self.yarns.map(|yarn| yarn.pull(q, stiffness));
+    fn press(&self, q: &[f64], strands: &[Strand], lambda: &mut [f64]) {
+        let pulls = self.yarns.map(|yarn| yarn.pull(q, strands));
         let (child, parents) = (pulls[0], &pulls[1..self.count]);
-        let parents_pull = parents.iter().fold([0.0; 3], |sum, (force, _)| add(sum, *force));
+        let parents_pull = parents.iter().fold([0.0; 3], |sum, pull| add(sum, pull.force));
         // The parents run side by side, one way or the other.
-        let along =
-            parents.iter().fold(
-                [0.0; 3],
-                |sum: [f64; 3], (_, along)| {
-                    if dot(sum, *along) < 0.0 { sub(sum, *along) } else { add(sum, *along) }
-                },
-            );
+        let along = parents.iter().fold([0.0; 3], |sum: [f64; 3], pull| {
+            if dot(sum, pull.along) < 0.0 { sub(sum, pull.along) } else { add(sum, pull.along) }
+        });
         let length = dot(along, along).sqrt();
         let along = if length > 1e-6 { scale(along, 1.0 / length) } else { [0.0; 3] };
-        let across = across_both(sub(child.0, parents_pull), child.1, along);
+        let across = across_both(sub(child.force, parents_pull), child.along, along);
         let size = dot(across, across).sqrt();
         if size == 0.0 {
             return lambda.fill(0.0);
         }
-        let pulled = pulls.map(|(force, _)| dot(force, across) / size);
+        let pulled = pulls.map(|pull| dot(pull.force, across) / size);
         stack_compressions(&pulled[..self.count], lambda);
     }
 }
@@ -208,11 +271,21 @@ fn stack_compressions(pulled: &[f64], lambda: &mut [f64]) {
     }
 }
 
+/// How a yarn pulls on a node.
+#[derive(Clone, Copy)]
+struct Pull {
+    /// Net pull \[N\].
+    force: [f64; 3],
+    /// Direction of the yarn there: zero if it is folded back on itself.
+    along: [f64; 3],
+    /// Pull through the fabric, which the straight model does not show \[N\].
+    crimp: f64,
+}
+
 impl Neighbours {
-    /// Net pull of the yarn on the node \[N\], and its direction there: zero if it is folded back on itself.
-    fn pull(&self, q: &[f64], stiffness: [f64; 2]) -> ([f64; 3], [f64; 3]) {
-        let mut force = [0.0; 3];
-        let mut along = [0.0; 3];
+    fn pull(&self, q: &[f64], strands: &[Strand]) -> Pull {
+        let strand = &strands[usize::from(self.strand)];
+        let mut pull = Pull { force: [0.0; 3], along: [0.0; 3], crimp: 0.0 };
         let here = self.block[1] as usize * BLOCK;
         for end in [0, 2] {
             let there = self.block[end] as usize * BLOCK;
@@ -220,16 +293,25 @@ impl Neighbours {
             let d: [f64; 3] = std::array::from_fn(|k| q[there + k] - q[here + k]);
             let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
             if length > 0.0 && rest > 0.0 {
-                let tension = stiffness[usize::from(self.chain[end / 2])] * (length / rest - 1.0);
+                let tension = strand.stiffness[usize::from(self.chain[end / 2])] * (length / rest - 1.0);
                 let sign = if end == 0 { -1.0 } else { 1.0 };
                 for k in 0..3 {
-                    force[k] += tension / length * d[k];
-                    along[k] += sign / length * d[k];
+                    pull.force[k] += tension / length * d[k];
+                    pull.along[k] += sign / length * d[k];
+                }
+                if self.interlaces[end / 2] {
+                    pull.crimp += tension.max(0.0) * strand.crimp_height / length;
                 }
             }
         }
-        let square = dot(along, along);
-        (force, if square > 1e-12 { scale(along, 1.0 / square.sqrt()) } else { [0.0; 3] })
+        let square = dot(pull.along, pull.along);
+        pull.along = if square > 1e-12 { scale(pull.along, 1.0 / square.sqrt()) } else { [0.0; 3] };
+        pull
+    }
+
+    /// From the pass before to the pass after.
+    fn direction(&self, positions: &[DVec3]) -> DVec3 {
+        positions[self.block[2] as usize] - positions[self.block[0] as usize]
     }
 }
 
@@ -263,10 +345,12 @@ mod tests {
             q[5 * block..5 * block + 3].copy_from_slice(&x);
             q[5 * block + 3] = u;
         }
-        let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13], chain: [false; 2] };
+        let yarn =
+            Neighbours { block: [1, 0, 2], slot: [8, 3, 13], chain: [false; 2], interlaces: [false; 2], strand: 0 };
         // The other yarn pulls the node back with the opposite of the first one's resultant, as in equilibrium.
-        let (force, along) = yarn.pull(&q, [1.0; 2]);
-        let f = across_both(force, along, [0.0; 3]);
+        let strands = vec![Strand { stiffness: [1.0; 2], crimp_height: 0.0 }];
+        let own = yarn.pull(&q, &strands);
+        let f = across_both(own.force, own.along, [0.0; 3]);
         let mut out = Vec::new();
         let pull = (f[0] * f[0] + f[1] * f[1]).sqrt();
         // Two ends, the half of it each, out of the plane by a hair so that the holder has a direction.
@@ -276,9 +360,45 @@ mod tests {
             q[5 * block + 2] = z;
         }
         (q[18], q[23]) = (-1.0, 1.0);
-        let holder = Neighbours { block: [3, 0, 4], slot: [18, 4, 23], chain: [false; 2] };
-        Compression { contacts: vec![[yarn, holder]], ..Compression::default() }.evaluate(&q, [1.0; 2], &mut out);
+        let holder =
+            Neighbours { block: [3, 0, 4], slot: [18, 4, 23], chain: [false; 2], interlaces: [false; 2], strand: 0 };
+        let contacts = vec![Contact { yarns: [yarn, holder], side: None }];
+        Compression { strands, contacts, ..Compression::default() }.evaluate(&q, &mut out);
         out[0]
+    }
+
+    #[test]
+    fn crimp_presses_a_flat_weave() {
+        // A flat crossing: segments of 2 m that were 1.9 m long, both to the other side, of both yarns.
+        let mut q = vec![0.0; 25];
+        let ends = [[2.0, 0.0], [-2.0, 0.0], [0.0, 2.0], [0.0, -2.0]];
+        for (k, [x, y]) in ends.into_iter().enumerate() {
+            (q[5 * k + 5], q[5 * k + 6], q[5 * k + 8]) = (x, y, if k % 2 == 0 { 1.9 } else { -1.9 });
+        }
+        let strands =
+            vec![Strand { stiffness: [3.0; 2], crimp_height: 0.2 }, Strand { stiffness: [5.0; 2], crimp_height: 0.3 }];
+        let yarn = |strand: u16, block: [u32; 3], own: u32| Neighbours {
+            block,
+            slot: [5 * block[0] + 3, own, 5 * block[2] + 3],
+            chain: [false; 2],
+            interlaces: [true; 2],
+            strand,
+        };
+        let yarns = [yarn(0, [2, 0, 1], 3), yarn(1, [4, 0, 3], 4)];
+        let contacts = vec![Contact { yarns, side: Some(1.0) }];
+        let compression = Compression { strands, contacts, ..Compression::default() };
+        let mut out = Vec::new();
+        compression.evaluate(&q, &mut out);
+        let strain = 2.0 / 1.9 - 1.0;
+        let expected = 0.5 * strain * (2.0 * 3.0 * 0.2 / 2.0 + 2.0 * 5.0 * 0.3 / 2.0);
+        assert!((out[0] / expected - 1.0).abs() < 1e-12, "{} {expected}", out[0]);
+        // Bent over the yarn behind it, the front yarn presses more; bent away from it, less.
+        (q[7], q[12]) = (-0.1, -0.1);
+        compression.evaluate(&q, &mut out);
+        assert!(out[0] > 1.05 * expected);
+        (q[7], q[12]) = (0.1, 0.1);
+        compression.evaluate(&q, &mut out);
+        assert!(out[0] < 0.95 * expected);
     }
 
     #[test]

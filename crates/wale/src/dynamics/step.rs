@@ -9,7 +9,6 @@ use super::system::System;
 use crate::contact::surface::{obstacle_distance, to_rest_frame};
 use crate::energy::{Inertia, ObstacleContact, ParallelSpring, Rate, SelfContact};
 use crate::fabric::coordinates::{BLOCK, dof};
-use crate::fabric::mechanics::chain_stiffness;
 use crate::model::{Obstacle, PassId};
 
 /// Where a node touches an obstacle during a step.
@@ -39,20 +38,20 @@ impl System {
     /// Freezes mass, damping and friction at the state that a step of length `h` starts from.
     pub(crate) fn begin_step(&mut self, state: &State, h: f64, friction: bool, compression: &mut Vec<f64>) {
         let (q, v) = (&state.coordinates, &state.velocities);
-        let alpha = self.yarn.mass_damping;
+        let alpha = self.yarns.first().mass_damping;
         let factor = 1.0 / (h * h) + alpha / h;
         // Inertia pulls towards q + h v, mass damping towards q.
         let reach = h / (1.0 + alpha * h);
-        let density = self.yarn.linear_density;
         self.segments.update(q, |stencil, (_, inertia), local| {
             let rest = local[7] - local[3];
             *inertia = Inertia {
-                factor: factor * density * rest / 6.0,
+                density: inertia.density,
+                factor: factor * inertia.density * rest / 6.0,
                 direction: std::array::from_fn(|k| (local[4 + k] - local[k]) / rest),
                 target: std::array::from_fn(|i| local[i] + reach * v[stencil[i] as usize]),
             };
         });
-        let beta_over_h = self.yarn.stiffness_damping / h;
+        let beta_over_h = self.stiffness_damping / h;
         let halfway = |stencil: &[u32; 12], local: &[f64; 12]| -> [f64; 12] {
             std::array::from_fn(|i| local[i] + 0.5 * h * v[stencil[i] as usize])
         };
@@ -62,21 +61,19 @@ impl System {
         self.wraps.update(q, |stencil, (wrapping, rate), local| {
             *rate = Rate::of_wrap(local, &halfway(stencil, local), wrapping, beta_over_h);
         });
-        let stiffness = [self.yarn.stretch_stiffness, chain_stiffness(&self.yarn, &self.card)];
-        self.compression.evaluate(q, stiffness, compression);
-        let (mu, least) = (self.yarn.friction_coefficient, self.card.residual_compression);
+        self.compression.evaluate(q, compression);
+        let least = self.card.residual_compression();
         let rubbing = &self.rubbing;
         let lambda = &*compression;
         self.friction.set.elements.par_iter_mut().zip(rubbing).with_min_len(4096).for_each(
-            |(element, &(pass, contact))| {
+            |(element, &(pass, contact, mu))| {
                 element.anchor = state.anchors[pass.index()];
                 // Without friction the spring is there but carries nothing.
                 element.limit = if friction { mu * lambda[contact].max(least) } else { 0.0 };
             },
         );
-        for (ParallelSpring(spring), (contact, pair)) in
-            self.parallel.set.elements.iter_mut().zip(self.compression.parallel())
-        {
+        let parallel = self.parallel.set.elements.iter_mut().zip(&self.parallel_friction);
+        for ((ParallelSpring(spring), mu), (contact, pair)) in parallel.zip(self.compression.parallel()) {
             spring.anchor = state.anchors[pair[1].index()];
             spring.limit = if friction { mu * lambda[*contact].max(least) } else { 0.0 };
         }
@@ -95,7 +92,7 @@ impl System {
 
     /// Moves the friction anchors of the passes to where the step left them.
     pub(crate) fn drag_anchors(&self, q: &[f64], anchors: &mut [f64]) {
-        for ((element, stencil), (pass, _)) in
+        for ((element, stencil), (pass, ..)) in
             self.friction.set.elements.iter().zip(&self.friction.set.stencils).zip(&self.rubbing)
         {
             anchors[pass.index()] = element.dragged_anchor(q[stencil[0] as usize]);
@@ -112,10 +109,10 @@ impl System {
         touches.clear();
         self.obstacles.set.elements.clear();
         self.obstacles.set.stencils.clear();
-        let radius = self.yarn.radius;
         for node in 0..self.coordinates.node_count() {
             let x = self.coordinates.position_of(node, &state.coordinates);
             let speed = DVec3::from_slice(&state.velocities[BLOCK * node..BLOCK * node + 3]).length();
+            let radius = self.radius_at_node[node];
             for (index, obstacle) in obstacles.iter().enumerate() {
                 let reach = (1.0 + WATCH) * radius + 2.0 * h * speed;
                 let near = |time: f64| obstacle_distance(obstacle, x, time).0 < reach;
@@ -143,7 +140,7 @@ impl System {
             let obstacle = &obstacles[touch.obstacle as usize];
             let node = touch.node as usize;
             let x = self.coordinates.position_of(node, &state.coordinates);
-            let mass = self.yarn.linear_density * self.yarn_at_node[node];
+            let (mass, radius) = (self.mass_at_node[node], self.radius_at_node[node]);
             // Strong enough for a thousand weights, and stiffer in shorter steps, so that impacts stay shallow.
             let stiffness = (1e3 * mass * 9.81 / (PENALTY_DEPTH * radius)).max(0.1 * mass / (h * h));
             let (distance, _) = obstacle_distance(obstacle, x, state.time);
@@ -162,7 +159,7 @@ impl System {
 
     /// Finds the nodes that may meet others of the same fabric during a step of length `h`.
     pub(crate) fn find_self_contacts(&mut self, state: &State, h: f64) {
-        let radius = self.yarn.radius;
+        let radius = self.radius_at_node.iter().copied().fold(0.0, f64::max);
         let distance = LAYERS * radius;
         let nodes = self.coordinates.node_count();
         let velocity = |node: usize| DVec3::from_slice(&state.velocities[BLOCK * node..]);
@@ -172,15 +169,15 @@ impl System {
         let fastest = squares.reduce(|| 0.0, f64::max).sqrt();
         // Two nodes close in by twice the fastest; a longer reach would find everything near everything.
         let reach = distance + (2.0 * h * fastest).clamp(0.5 * radius, distance);
-        let apart = KNITTED_TOGETHER * self.card.wale_spacing.max(self.card.course_spacing);
+        let apart = KNITTED_TOGETHER * self.card.cell().into_iter().fold(0.0, f64::max);
         let (coordinates, q) = (&self.coordinates, &state.coordinates);
         let pairs = self.nearby.find(|node| coordinates.position_of(node, q), &self.layout, reach, apart);
         let had = !self.self_contacts.set.is_empty();
         self.self_contacts.set.elements.clear();
         self.self_contacts.set.stencils.clear();
         for pair in pairs {
-            let mass =
-                self.yarn.linear_density * pair.iter().map(|&node| self.yarn_at_node[node as usize]).sum::<f64>();
+            let mass: f64 = pair.iter().map(|&node| self.mass_at_node[node as usize]).sum();
+            let distance = 0.5 * LAYERS * pair.iter().map(|&node| self.radius_at_node[node as usize]).sum::<f64>();
             let stiffness = 1e3 * mass * 9.81 / (PENALTY_DEPTH * radius);
             let [a, b] = pair.map(|node| dof(BLOCK * node as usize));
             self.self_contacts.set.push(SelfContact { stiffness, distance }, [a, a + 1, a + 2, b, b + 1, b + 2]);
@@ -213,7 +210,7 @@ impl System {
             let x = self.coordinates.position_of(touch.node as usize, q);
             let (distance, normal) = obstacle_distance(&obstacles[touch.obstacle as usize], x, time);
             element.normal = normal.to_array();
-            element.point = (x - normal * (distance - self.yarn.radius)).to_array();
+            element.point = (x - normal * (distance - self.radius_at_node[touch.node as usize])).to_array();
         }
     }
 

@@ -12,21 +12,28 @@ use super::terms::{AnyTerm, ChunkOutput, Term, Width};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, ParallelSpring, Rate,
-    SelfContact, Spacing, StitchLength, Stretch, Wrapping,
+    SelfContact, Shear, Spacing, StitchLength, Stretch, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
 use crate::fabric::{Coordinates, Mechanics};
-use crate::model::{FabricCard, Network, NodeId, PassId, YarnCard};
+use crate::model::{FabricCard, Network, NodeId, PassId, SegmentKind, Yarns};
 
 /// A fabric as the solvers see it.
 pub struct System {
     /// Where coordinates lie.
     pub coordinates: Coordinates,
-    /// The yarn, its linear density that of the model's yarn.
-    pub yarn: YarnCard,
+    /// The yarns.
+    pub yarns: Yarns,
     /// The fabric card.
     pub card: FabricCard,
+    /// Radius of the thickest yarn at each node \[m\], and of the thinnest of all, by which tolerances are measured.
+    pub(super) radius_at_node: Vec<f64>,
+    pub(super) least_radius: f64,
+    /// Stiffness damping `β` \[s\], that of the first yarn unless it was set.
+    pub(super) stiffness_damping: f64,
+    /// Whether each segment is a cast-on or bind-off, a chain of loops.
+    pub(super) chained: Vec<bool>,
     pub(super) chunks: Chunks,
     pub(super) pattern: Arc<BlockPattern>,
     /// Segments of yarn.
@@ -35,6 +42,7 @@ pub struct System {
     pub(super) wraps: Term<(Wrapping, Rate), 12>,
     pub(super) stitch_length: Term<StitchLength, 2>,
     pub(super) spacing: Term<Spacing, 2>,
+    pub(super) shear: Term<Shear, 9>,
     pub(super) friction: Term<AnchoredSpring, 1>,
     /// Friction of parallel yarns in stacks, in the order of [`Compression::parallel`].
     pub(super) parallel: Term<ParallelSpring, 2>,
@@ -43,10 +51,13 @@ pub struct System {
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
     pub(super) compression: Compression,
-    /// Pass and contact of each friction element.
-    pub(super) rubbing: Vec<(PassId, usize)>,
-    /// Rest length of yarn that belongs to each node in the initial layout \[m\].
+    /// Pass, contact and coefficient of friction of each friction element.
+    pub(super) rubbing: Vec<(PassId, usize, f64)>,
+    /// Coefficient of friction of each pair of parallel yarns.
+    pub(super) parallel_friction: Vec<f64>,
+    /// Rest length \[m\] and mass \[kg\] of the yarn that belongs to each node in the initial layout.
     pub(super) yarn_at_node: Vec<f64>,
+    pub(super) mass_at_node: Vec<f64>,
     /// Where the nodes lie in the layout \[m\], and who has come near whom since.
     pub(super) layout: Vec<DVec3>,
     pub(super) nearby: Nearby,
@@ -55,7 +66,7 @@ pub struct System {
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 11;
+pub(super) const TERMS: usize = 12;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -75,12 +86,13 @@ struct ChunkWork {
 pub type Energies = [(&'static str, f64); KINDS.len()];
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 13] = [
+const KINDS: [&str; 14] = [
     Stretch::NAME,
     Bending::NAME,
     Wrapping::NAME,
     StitchLength::NAME,
     Spacing::NAME,
+    Shear::NAME,
     Gravity::NAME,
     Load::NAME,
     Foundation::NAME,
@@ -94,45 +106,84 @@ const KINDS: [&str; 13] = [
 impl System {
     /// Sets up a fabric without gravity, obstacles or loads.
     #[must_use]
-    pub fn new(network: &Network, yarn: &YarnCard, card: &FabricCard) -> Self {
+    pub fn new(network: &Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>) -> Self {
+        let (yarns, card) = (yarns.into(), card.into());
         let mut coordinates = Coordinates::new(network);
-        let mechanics = Mechanics::new(network, yarn, card, &mut coordinates);
+        let mechanics = Mechanics::new(network, &yarns, &card, &mut coordinates);
         let chunks = Chunks::new(coordinates.block_count());
-        let still = Inertia { factor: 0.0, direction: [0.0; 3], target: [0.0; 8] };
+        let yarn_of = network.pass_yarn();
+        let material = |pass: PassId| yarns.of(network.yarn_kind[yarn_of[pass.index()].index()]);
+        // The model's yarn is shorter than the real one, so that a metre of it weighs more.
+        let densities: Vec<f64> = mechanics
+            .segment_after
+            .iter()
+            .map(|&pass| {
+                let role = network.yarn_role[yarn_of[pass.index()].index()];
+                material(pass).linear_density / card.path_ratio(role)
+            })
+            .collect();
         let weightless = Gravity { weight: [0.0; 3] };
-        let segments = mechanics.stretch.map(|stretch| ((stretch, weightless), still));
+        let mut density = densities.iter();
+        let segments = mechanics.stretch.map(|stretch| {
+            let density = density.next().copied().unwrap_or(0.0);
+            ((stretch, weightless), Inertia { density, factor: 0.0, direction: [0.0; 3], target: [0.0; 8] })
+        });
         let bends = mechanics.bending.map(|bending| (bending, Rate::NONE));
         let wraps = mechanics.wrapping.map(|wrapping| (wrapping, Rate::NONE));
-        let compression = Compression::new(network, &coordinates);
+        let compression = Compression::new(network, &yarns, &card, &coordinates);
+        // Two yarns rub with the mean of what each is said to rub with against its like.
+        let rubs = |pass: PassId| {
+            let stack = network.stack(network.pass_node[pass.index()]);
+            let others: Vec<f64> = stack
+                .iter()
+                .filter(|&&other| other != pass)
+                .map(|&other| material(other).friction_coefficient)
+                .collect();
+            0.5 * (material(pass).friction_coefficient + others.iter().sum::<f64>() / others.len().max(1) as f64)
+        };
         let mut friction = Elements::default();
         let mut rubbing = Vec::new();
+        let spring = AnchoredSpring { stiffness: card.anchor_stiffness(), limit: 0.0, anchor: 0.0 };
         for p in 0..network.pass_count() {
             let pass = PassId::new(p);
             if let (true, Some(contact)) = (network.pass_slides[p], compression.contact_of(pass)) {
-                let slot = dof(coordinates.slot(pass));
-                friction.push(AnchoredSpring { stiffness: card.anchor_stiffness, limit: 0.0, anchor: 0.0 }, [slot]);
-                rubbing.push((pass, contact));
+                friction.push(spring, [dof(coordinates.slot(pass))]);
+                rubbing.push((pass, contact, rubs(pass)));
             }
         }
         let mut parallel = Elements::default();
+        let mut parallel_friction = Vec::new();
         for (_, pair) in compression.parallel() {
-            let spring = AnchoredSpring { stiffness: card.anchor_stiffness, limit: 0.0, anchor: 0.0 };
             parallel.push(ParallelSpring(spring), pair.map(|pass| dof(coordinates.slot(pass))));
+            parallel_friction.push(0.5 * pair.iter().map(|&pass| material(pass).friction_coefficient).sum::<f64>());
         }
         let mut yarn_at_node = vec![0.0; network.node_count()];
+        let mut mass_at_node = vec![0.0; network.node_count()];
         let initial = coordinates.initial(network);
-        for stencil in &segments.stencils {
+        for (stencil, density) in segments.stencils.iter().zip(&densities) {
             let rest = initial[stencil[7] as usize] - initial[stencil[3] as usize];
             for end in [0, 4] {
                 yarn_at_node[stencil[end] as usize / BLOCK] += 0.5 * rest;
+                mass_at_node[stencil[end] as usize / BLOCK] += 0.5 * rest * density;
             }
         }
+        let radius_at_node = (0..network.node_count())
+            .map(|node| network.stack(NodeId::new(node)).iter().map(|&pass| material(pass).radius).fold(0.0, f64::max));
+        let radius_at_node = radius_at_node.collect();
+        let least_radius = network.yarn_kind.iter().map(|&kind| yarns.of(kind).radius).fold(f64::INFINITY, f64::min);
+        let chain = |&pass: &PassId| network.segment_kind[pass.index()] == SegmentKind::Chain;
         let mut chart_place = network.chart_place.clone();
         chart_place.resize(coordinates.block_count(), [0.0; 2]);
         let mut system = Self {
-            // The model's yarn is shorter than the real one, so that a metre of it weighs more.
-            yarn: YarnCard { linear_density: yarn.linear_density / card.path_ratio, ..yarn.clone() },
-            card: card.clone(),
+            radius_at_node,
+            least_radius,
+            stiffness_damping: yarns.first().stiffness_damping,
+            chained: mechanics.segment_after.iter().map(chain).collect(),
+            parallel_friction,
+            mass_at_node,
+            shear: Term::new(mechanics.shear, &chunks),
+            yarns,
+            card,
             pattern: Arc::new(BlockPattern::from_pairs(0, [])),
             segments: Term::new(segments, &chunks),
             bends: Term::new(bends, &chunks),
@@ -164,6 +215,7 @@ impl System {
         system.wraps.locate(&system.pattern);
         system.stitch_length.locate(&system.pattern);
         system.spacing.locate(&system.pattern);
+        system.shear.locate(&system.pattern);
         system.friction.locate(&system.pattern);
         system.parallel.locate(&system.pattern);
         system
@@ -171,15 +223,14 @@ impl System {
 
     /// Sets gravity \[m/s²\].
     pub fn set_gravity(&mut self, gravity: DVec3) {
-        let weight = (gravity * self.yarn.linear_density).to_array();
-        for ((_, gravity), _) in &mut self.segments.set.elements {
-            gravity.weight = weight;
+        for ((_, weight), inertia) in &mut self.segments.set.elements {
+            weight.weight = (gravity * inertia.density).to_array();
         }
     }
 
     /// Sets the stiffness damping `β` \[s\] of the steps to come.
     pub fn set_stiffness_damping(&mut self, beta: f64) {
-        self.yarn.stiffness_damping = beta;
+        self.stiffness_damping = beta;
     }
 
     /// Lays the fabric on an elastic bed at a height \[m\] of stiffness \[N/m\] a node; zero takes it away.
@@ -238,6 +289,7 @@ impl System {
             &self.wraps,
             &self.stitch_length,
             &self.spacing,
+            &self.shear,
             &self.friction,
             &self.parallel,
             &self.obstacles,
@@ -325,15 +377,14 @@ impl System {
     /// rest length \[m\].
     #[must_use]
     pub fn extremes(&self, q: &[f64]) -> (f64, f64) {
-        let of = |(stencil, ((stretch, _), _)): (&[u32; 8], &((Stretch, Gravity), Inertia))| {
+        let of = |(stencil, &chained): (&[u32; 8], &bool)| {
             let at = |k: usize| q[stencil[k] as usize];
             let rest = at(7) - at(3);
             let length = ((at(4) - at(0)).powi(2) + (at(5) - at(1)).powi(2) + (at(6) - at(2)).powi(2)).sqrt();
-            let ratio = if stretch.stiffness < self.yarn.stretch_stiffness { 1.0 } else { length / rest };
+            let ratio = if chained { 1.0 } else { length / rest };
             (ratio, rest)
         };
-        let set = &self.segments.set;
-        let segments = set.stencils.par_iter().zip(&set.elements).with_min_len(4096);
+        let segments = self.segments.set.stencils.par_iter().zip(&self.chained).with_min_len(4096);
         segments.map(of).reduce(|| (0.0, f64::INFINITY), |a, b| (a.0.max(b.0), a.1.min(b.1)))
     }
 
@@ -342,6 +393,18 @@ impl System {
     pub fn bytes(&self) -> usize {
         let terms: usize = self.terms().iter().map(|term| term.bytes()).sum();
         terms + self.pattern.block_count() * 4 + self.compression.len() * 64
+    }
+
+    /// Radius of the thinnest yarn \[m\], by which tolerances are measured.
+    #[must_use]
+    pub fn least_radius(&self) -> f64 {
+        self.least_radius
+    }
+
+    /// Stiffness damping `β` \[s\] of the steps to come.
+    #[must_use]
+    pub fn stiffness_damping(&self) -> f64 {
+        self.stiffness_damping
     }
 
     /// Rest length of yarn at a node in the initial layout \[m\].

@@ -6,7 +6,7 @@ use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
-use crate::model::{FabricCard, Network, PassId, YarnCard, YarnId};
+use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
 
 /// How a tile is brought to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,8 +55,13 @@ pub struct TileEquilibrium {
 /// Unknowns are all positions, all sliding coordinates and both periods; one node's place in the plane and one sliding
 /// coordinate of each yarn are held, which fixes the rigid motions and nothing else.
 #[must_use]
-pub fn relax_tile(network: &Network, yarn: &YarnCard, card: &FabricCard, settings: &TileSettings) -> TileEquilibrium {
-    Problem::new(network, yarn, card, settings).solve(settings)
+pub fn relax_tile(
+    network: &Network,
+    yarns: impl Into<Yarns>,
+    card: &KnitCard,
+    settings: &TileSettings,
+) -> TileEquilibrium {
+    Problem::new(network, &yarns.into(), card, settings).solve(settings)
 }
 
 struct Problem {
@@ -79,11 +84,11 @@ struct Problem {
 }
 
 impl Problem {
-    fn new(network: &Network, yarn: &YarnCard, card: &FabricCard, settings: &TileSettings) -> Self {
+    fn new(network: &Network, yarns: &Yarns, card: &KnitCard, settings: &TileSettings) -> Self {
         let mut coordinates = TileCoordinates::new(network);
-        let mechanics = Mechanics::new(network, yarn, card, &mut coordinates);
+        let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
         let length = card.loop_length;
-        let force = yarn.bending_stiffness / (length * length);
+        let force = yarns.first().bending_stiffness / (length * length);
         let mut bed = Elements::default();
         if settings.bed > 0.0 {
             let stiffness = settings.bed * force / length;

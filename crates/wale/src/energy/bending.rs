@@ -4,8 +4,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use wale_numerics::check::Local;
 use wale_numerics::jet::Real;
-use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
+use wale_numerics::jet::vector3::{add, dot, scale, sub};
 
+use super::angle::{Angle, Turning};
 use super::element::{Element, point};
 
 /// Bending between two consecutive segments of a yarn.
@@ -34,10 +35,6 @@ const SMOOTHING: f64 = 0.02;
 const JAMMING: f64 = 2.0 * 999.0 / (6.0 * FRAC_PI_2);
 /// Below this `|t₁ − t₂|²` the series of `θ²` is exact to round-off.
 const NEARLY_STRAIGHT: f64 = 1e-8;
-
-/// Largest `tan(θ/2)`: a yarn folded in two exactly, as a straight strand is whose nodes pass each other, would bend out of
-/// its plane with infinite curvature.
-const STEEPEST: f64 = 1e4;
 
 impl Bending {
     /// `f(θ)` and its first two derivatives.
@@ -105,7 +102,7 @@ impl Element<12> for Bending {
     }
 
     fn add_blended(&self, q: &[f64; 12], convexity: f64, sum: &mut Local<12>) {
-        let angle = Angle::new(q);
+        let angle = Angle::new([0, 4, 8].map(|start| point(q, start)));
         let rest = q[11] - q[3];
         let k = self.stiffness / rest;
         let [f, first, second] = self.profile(angle.theta);
@@ -115,38 +112,10 @@ impl Element<12> for Bending {
         let exact = [k * second, -k * first / rest, 2.0 * k * f / (rest * rest)];
         let clamped = if convexity > 0.0 { clamp2(exact) } else { exact };
         let [by_angle, mixed, by_rest] = std::array::from_fn(|i| exact[i] + convexity * (clamped[i] - exact[i]));
-        // What turns the bend out of its plane, both segments against each other or together, and what tilts a segment
-        // while it changes length, changes θ to second order with either sign; the convex Hessian takes the size.
-        let blend = |curvature: f64| curvature + convexity * (curvature.abs() - curvature);
-        let opposite = blend(0.5 * k * self.slope_by_angle(angle.theta) * angle.over_half_tangent());
-        let together = blend(-0.5 * k * first * angle.half_tangent);
-        let tilt = (1.0 - convexity) * k * first;
-        let in_plane = by_angle + convexity * k * first.abs();
-
-        let [l1, l2] = angle.length.map(|length| 1.0 / length);
-        let ([t1, t2], [m1, m2], b) = (angle.tangent, angle.in_plane, angle.binormal);
+        let over_half_tangent = k * self.slope_by_angle(angle.theta) * angle.over_half_tangent();
+        let turning = Turning::new(&angle, k * first, by_angle, over_half_tangent, convexity);
+        angle.add_hessian(&turning, [0, 4, 8], &mut sum.hessian);
         let hessian = &mut sum.hessian;
-        for i in 0..3 {
-            for j in 0..3 {
-                // By d₁ = x₁ − x₀ and d₂ = x₂ − x₁.
-                let across = b[i] * b[j];
-                let out = (opposite + together) * across;
-                let h11 = l1 * l1 * (in_plane * m1[i] * m1[j] + tilt * (t1[i] * m1[j] + m1[i] * t1[j]) + out);
-                let h22 = l2 * l2 * (in_plane * m2[i] * m2[j] - tilt * (t2[i] * m2[j] + m2[i] * t2[j]) + out);
-                let turn = (together - opposite) * across;
-                let h12 = l1 * l2 * (turn - by_angle * m1[i] * m2[j]);
-                let h21 = l1 * l2 * (turn - by_angle * m2[i] * m1[j]);
-                hessian[i][j] += h11;
-                hessian[i][4 + j] += h12 - h11;
-                hessian[i][8 + j] -= h12;
-                hessian[4 + i][j] += h21 - h11;
-                hessian[4 + i][4 + j] += h11 + h22 - h12 - h21;
-                hessian[4 + i][8 + j] += h12 - h22;
-                hessian[8 + i][j] -= h21;
-                hessian[8 + i][4 + j] += h21 - h22;
-                hessian[8 + i][8 + j] += h22;
-            }
-        }
         for (node, gradient) in angle.gradient.iter().enumerate() {
             for i in 0..3 {
                 let h = mixed * gradient[i];
@@ -163,64 +132,7 @@ impl Element<12> for Bending {
     }
 
     fn gradient(&self, q: &[f64; 12]) -> (f64, [f64; 12]) {
-        self.value(&Angle::new(q), q[11] - q[3])
-    }
-}
-
-/// The turning angle of two segments and what its derivatives are made of.
-///
-/// With `μ`, `τ` and `β` how far the end of a segment moves along its normal in the plane of the bend, along itself and
-/// out of the plane, in lengths of the segment, `θ` changes by
-/// `μ₂ − μ₁ + τ₁μ₁ − τ₂μ₂ + ¼ cot(θ/2) (β₁ − β₂)² − ¼ tan(θ/2) (β₁ + β₂)²` to second order.
-struct Angle {
-    theta: f64,
-    /// `tan(θ/2)`.
-    half_tangent: f64,
-    /// By `x₀`, `x₁`, `x₂`.
-    gradient: [[f64; 3]; 3],
-    /// Unit vectors along the segments.
-    tangent: [[f64; 3]; 2],
-    /// Unit vector normal to both segments (any, where they are parallel).
-    binormal: [f64; 3],
-    /// Unit vectors in the plane of the bend, normal to each segment.
-    in_plane: [[f64; 3]; 2],
-    length: [f64; 2],
-}
-
-impl Angle {
-    fn new(q: &[f64; 12]) -> Self {
-        let (d1, d2) = (sub(point(q, 4), point(q, 0)), sub(point(q, 8), point(q, 4)));
-        let length = [dot(d1, d1).sqrt(), dot(d2, d2).sqrt()];
-        let (t1, t2) = (scale(d1, 1.0 / length[0]), scale(d2, 1.0 / length[1]));
-        let (difference, sum) = (sub(t2, t1), add(t1, t2));
-        let (opening, closing) = (dot(difference, difference).sqrt(), dot(sum, sum).sqrt());
-        let normal = cross(t1, t2);
-        let sine = dot(normal, normal).sqrt();
-        let binormal = if sine < 1e-12 {
-            // Straight: θ has no direction, but every energy here is even in it, so no gradient is lost.
-            let axis = if t1[0].abs() < 0.6 { [1.0, 0.0, 0.0] } else { [0.0, 1.0, 0.0] };
-            let b = cross(t1, axis);
-            scale(b, 1.0 / dot(b, b).sqrt())
-        } else {
-            scale(normal, 1.0 / sine)
-        };
-        // In-plane unit vectors: turning t₂ along m₂, or t₁ against m₁, increases θ.
-        let (m1, m2) = (cross(binormal, t1), cross(binormal, t2));
-        let (a, b) = (scale(m1, 1.0 / length[0]), scale(m2, 1.0 / length[1]));
-        Self {
-            theta: 2.0 * opening.atan2(closing),
-            half_tangent: (opening / closing).min(STEEPEST),
-            gradient: [a, sub(scale(a, -1.0), b), b],
-            tangent: [t1, t2],
-            binormal,
-            in_plane: [m1, m2],
-            length,
-        }
-    }
-
-    /// `θ cot(θ/2)`, finite at the straight yarn.
-    fn over_half_tangent(&self) -> f64 {
-        if self.half_tangent > 1e-4 { self.theta / self.half_tangent } else { 2.0 - self.theta * self.theta / 6.0 }
+        self.value(&Angle::new([0, 4, 8].map(|start| point(q, start))), q[11] - q[3])
     }
 }
 

@@ -14,6 +14,8 @@ use super::element::Element;
 /// below the error of implicit Euler. Local coordinates: `x₀ u₀ x₁ u₁` \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inertia {
+    /// Linear density `ρ_l` of the yarn \[kg/m\]; the energy has it in its factor.
+    pub density: f64,
     /// `c ρ_l Δu/6` \[kg/s²\], where `c = 1/h² + α/h`.
     pub factor: f64,
     /// Segment over rest length `w` at the start of the step \[–\].
@@ -90,7 +92,7 @@ mod tests {
         let mut random = Random::new(7);
         for _ in 0..10 {
             let target = random_yarn::<2, 8>(&mut random);
-            let element = Inertia { factor: 2.0, direction: [0.9, 0.2, -0.3], target };
+            let element = Inertia { density: 1.0, factor: 2.0, direction: [0.9, 0.2, -0.3], target };
             check(&element, &random_yarn::<2, 8>(&mut random), 1.0);
         }
     }
@@ -98,7 +100,7 @@ mod tests {
     #[test]
     fn translation_has_the_whole_mass_and_sliding_along_itself_almost_none() {
         let target = [0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0];
-        let element = Inertia { factor: 1.5, direction: [1.0, 0.0, 0.0], target };
+        let element = Inertia { density: 1.0, factor: 1.5, direction: [1.0, 0.0, 0.0], target };
         // ½ c ρ Δu v² with ρΔu = 6·factor/c.
         let moved = [0.0, 1.0, 0.0, 0.0, 2.0, 1.0, 0.0, 2.0];
         assert!((element.energy(&moved) - 0.5 * 9.0).abs() < 1e-12);

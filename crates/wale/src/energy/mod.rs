@@ -1,5 +1,6 @@
 //! Energies: one file each, with value, gradient and Hessian, knowing nothing of the fabric they will be part of.
 
+mod angle;
 pub mod bending;
 pub mod element;
 pub mod foundation;
@@ -10,6 +11,7 @@ pub mod load;
 pub mod obstacle_contact;
 pub mod rates;
 pub mod self_contact;
+pub mod shear;
 pub mod spacing;
 pub mod stitch_length;
 pub mod stretch;
@@ -25,6 +27,7 @@ pub use load::Load;
 pub use obstacle_contact::ObstacleContact;
 pub use rates::Rate;
 pub use self_contact::SelfContact;
+pub use shear::Shear;
 pub use spacing::Spacing;
 pub use stitch_length::StitchLength;
 pub use stretch::Stretch;

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::model::{Network, NodeId, PassId, PassKind, SegmentKind};
+use crate::model::{Network, NodeId, PassId, PassKind, SegmentKind, YarnRole};
 
 /// `columns` warps over and under `rows` wefts, `spacing` \[m\] apart, with a free end of half a spacing everywhere.
 ///
@@ -15,7 +15,7 @@ pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network 
         }
     }
     let mut stacks = vec![Vec::new(); rows * columns];
-    let mut lay = |crossings: Vec<(usize, bool)>, step: DVec3, color: [u8; 3]| {
+    let mut lay = |crossings: Vec<(usize, bool)>, step: DVec3, color: [u8; 3], role: YarnRole| {
         let first = network.position[crossings[0].0] - step * 0.5;
         let last = network.position[crossings[crossings.len() - 1].0] + step * 0.5;
         let ends = [network.position.len(), network.position.len() + 1];
@@ -43,15 +43,16 @@ pub(crate) fn plain_weave(columns: usize, rows: usize, spacing: f64) -> Network 
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap_or(u32::MAX));
         network.yarn_closure.push(None);
         network.yarn_kind.push(0);
+        network.yarn_role.push(role);
         network.yarn_color.push(color);
     };
     for row in 0..rows {
         let crossings = (0..columns).map(|c| (row * columns + c, (row + c) % 2 == 0)).collect();
-        lay(crossings, DVec3::X * spacing, [220, 200, 160]);
+        lay(crossings, DVec3::X * spacing, [220, 200, 160], YarnRole::Weft);
     }
     for column in 0..columns {
         let crossings = (0..rows).map(|r| (r * columns + column, (r + column) % 2 == 1)).collect();
-        lay(crossings, DVec3::Y * spacing, [60, 90, 160]);
+        lay(crossings, DVec3::Y * spacing, [60, 90, 160], YarnRole::Warp);
     }
     network.front = vec![DVec3::Z; network.position.len()];
     network.set_stacks(&stacks);

@@ -12,13 +12,15 @@ use glam::DVec3;
 use super::passes::{Passes, translation};
 use super::stack_normal::stack_normals;
 use super::{Curve, spline};
-use crate::model::{Frame, Network, YarnId};
+use crate::model::{FabricCard, Frame, Network, PassId, YarnId, YarnRole, Yarns};
 
 /// How curves are drawn from a network.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurveSettings {
-    /// Radius of the yarns \[m\].
-    pub radius: f64,
+    /// Radius of each of the fabric's yarns by its number \[m\]; at least one.
+    pub radii: Vec<f64>,
+    /// How far warp and weft go from the back of a woven fabric to its front \[m\]; the sum of their diameters if zero.
+    pub crimp_height: [f64; 2],
     /// Straight pieces that a segment is drawn with, at least one. The count does not depend on the frame.
     pub samples_per_segment: usize,
     /// Sideways distance of the yarns at the middle of a stitch contact, as a share of their touching distance.
@@ -29,10 +31,24 @@ pub struct CurveSettings {
 }
 
 impl CurveSettings {
-    /// Six pieces a segment, yarns led fully around each other.
+    /// Six pieces a segment, yarns of one radius led fully around each other.
     #[must_use]
     pub fn new(radius: f64) -> Self {
-        Self { radius, samples_per_segment: 6, clasp: 1.0, periods: None }
+        Self { radii: vec![radius], crimp_height: [0.0; 2], samples_per_segment: 6, clasp: 1.0, periods: None }
+    }
+
+    /// The same for a fabric of some yarns.
+    #[must_use]
+    pub fn of(yarns: &Yarns, card: &FabricCard) -> Self {
+        let radii = yarns.cards().iter().map(|yarn| yarn.radius).collect();
+        let crimp_height = card.woven().map_or([0.0; 2], |card| card.crimp_height);
+        Self { radii, crimp_height, ..Self::new(0.0) }
+    }
+
+    /// Radius of a yarn of a network \[m\].
+    fn radius(&self, network: &Network, yarn: YarnId) -> f64 {
+        let kind = usize::from(network.yarn_kind[yarn.index()]);
+        self.radii.get(kind).or(self.radii.first()).copied().unwrap_or_default()
     }
 }
 
@@ -74,14 +90,40 @@ fn offset_points(
 ) -> Vec<DVec3> {
     let mut points: Vec<DVec3> =
         (0..network.pass_count()).map(|p| passes.place(&frame.positions, periods, p)).collect();
+    let yarn_of = network.pass_yarn();
     for (node, normal) in normals.iter().enumerate() {
         let stack = network.stack(crate::model::NodeId::new(node));
-        let middle = stack.len().saturating_sub(1) as f64 / 2.0;
-        for (k, pass) in stack.iter().enumerate() {
-            points[pass.index()] += *normal * (middle - k as f64) * 2.0 * settings.radius;
+        for (pass, height) in stack.iter().zip(heights(network, stack, &yarn_of, settings)) {
+            points[pass.index()] += *normal * height;
         }
     }
     points
+}
+
+/// How far in front of the node each pass of its stack lies \[m\]: side by side, about the middle; at the crossings of a
+/// weave where the crimp of either yarn puts it.
+fn heights<'a>(
+    network: &'a Network,
+    stack: &'a [PassId],
+    yarn_of: &'a [YarnId],
+    settings: &'a CurveSettings,
+) -> impl Iterator<Item = f64> + 'a {
+    let radius = |pass: &PassId| settings.radius(network, yarn_of[pass.index()]);
+    let thickness: f64 = stack.iter().map(|pass| 2.0 * radius(pass)).sum();
+    let crossing = stack.len() == 2 && settings.crimp_height != [0.0; 2];
+    let mut above = 0.0;
+    stack.iter().enumerate().map(move |(k, pass)| {
+        let middle = match network.yarn_role[yarn_of[pass.index()].index()] {
+            YarnRole::Warp if crossing => Some(0.5 * settings.crimp_height[0]),
+            YarnRole::Weft if crossing => Some(0.5 * settings.crimp_height[1]),
+            _ => None,
+        };
+        above += 2.0 * radius(pass);
+        match middle {
+            Some(height) => height * if k == 0 { 1.0 } else { -1.0 },
+            None => 0.5 * thickness - above + radius(pass),
+        }
+    })
 }
 
 /// For segments of stitch contacts, by their first pass: the lateral offset \[m\] of the middle.
@@ -96,6 +138,7 @@ fn claspings(
     normals: &[DVec3],
 ) -> Vec<Option<DVec3>> {
     let mut offsets = vec![None; network.pass_count()];
+    let yarn_of = network.pass_yarn();
     for stitch in &network.stitches {
         let [q0, q1] = stitch.nodes;
         // Both nodes as the first yarn meets them: an axis free of periodic images.
@@ -104,7 +147,7 @@ fn claspings(
         };
         let axis = segment_between(network, frame, settings, passes, a.index(), b.index());
         let normal = normals[q0.index()] + normals[q1.index()];
-        let side = axis.cross(normal).normalize_or_zero() * (settings.radius * settings.clasp);
+        let side = axis.cross(normal).normalize_or_zero() * settings.clasp;
         let depth = |node, pass| network.stack(node).iter().position(|p| *p == pass);
         let depths: Vec<_> = stitch.passes.iter().map(|[a, b]| (depth(q0, *a), depth(q1, *b))).collect();
         for (i, [a, b]) in stitch.passes.iter().enumerate() {
@@ -122,7 +165,8 @@ fn claspings(
                 }
             });
             if turns != 0.0 {
-                offsets[first] = Some(-side * f64::signum(turns) * stitch.wrap_sign);
+                let radius = settings.radius(network, yarn_of[first]);
+                offsets[first] = Some(-side * radius * f64::signum(turns) * stitch.wrap_sign);
             }
         }
     }
@@ -206,8 +250,11 @@ impl Drawing<'_> {
             }
         }
         let period = closure.map(|(image, _)| translation(self.periods, image.map(i32::from)));
-        let mut curve =
-            Curve { radius: self.settings.radius, color: self.network.yarn_color[yarn.index()], ..Curve::default() };
+        let mut curve = Curve {
+            radius: self.settings.radius(self.network, yarn),
+            color: self.network.yarn_color[yarn.index()],
+            ..Curve::default()
+        };
         join(&knots, period, &mut curve);
         curve
     }
@@ -248,7 +295,7 @@ fn join(knots: &[Knot], period: Option<DVec3>, curve: &mut Curve) {
 mod tests {
     use super::*;
     use crate::geometry::sample_fabric::plain_weave;
-    use crate::model::{FabricCard, NodeId};
+    use crate::model::{KnitCard, NodeId};
     use crate::pattern::{Chart, Working, knit};
     use glam::{DQuat, EulerRot};
 
@@ -332,6 +379,8 @@ mod tests {
         network.yarn_start = vec![0, 2];
         network.yarn_closure = vec![Some(([1, 0], 2.5e-3))];
         network.yarn_color.truncate(1);
+        network.yarn_kind.truncate(1);
+        network.yarn_role.truncate(1);
         network.position = vec![DVec3::ZERO, DVec3::new(1e-3, 0.5e-3, 0.0)];
         network.front.truncate(2);
         network.set_stacks(&[vec![crate::model::PassId(0)], vec![crate::model::PassId(1)]]);
@@ -373,7 +422,7 @@ mod tests {
 
     #[test]
     fn clasped_yarns_go_around_each_other_and_not_through() {
-        let card = FabricCard {
+        let card = KnitCard {
             loop_length: 10e-3,
             path_ratio: 1.0,
             transition_length: 0.1,

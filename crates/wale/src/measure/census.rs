@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::model::{FabricCard, Network, NodeId, YarnCard, YarnId};
+use crate::model::{FabricCard, Network, NodeId, YarnId, Yarns};
 
 /// What a network consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,6 +35,8 @@ pub struct Census {
     pub yarn_length_m: f64,
     /// The same by the fabric's yarns, in their order \[m\].
     pub yarn_lengths_m: Vec<f64>,
+    /// Masses of the fabric's yarns, in their order \[kg\].
+    pub yarn_masses_kg: Vec<f64>,
     /// Mass of all yarns \[kg\].
     pub mass_kg: f64,
 }
@@ -42,7 +44,8 @@ pub struct Census {
 impl Census {
     /// Counts a network.
     #[must_use]
-    pub fn of(network: &Network, yarn: &YarnCard, card: &FabricCard) -> Self {
+    pub fn of(network: &Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>) -> Self {
+        let (yarns, card) = (yarns.into(), card.into());
         let mut nodes_by_stack_size = Vec::new();
         for node in 0..network.node_count() {
             let size = network.stack(NodeId::new(node)).len();
@@ -52,12 +55,14 @@ impl Census {
             nodes_by_stack_size[size] += 1;
         }
         let sliding = network.pass_slides.iter().filter(|slides| **slides).count();
-        let yarn_length = network.yarn_length() / card.path_ratio;
         let kinds = network.yarn_kind.iter().max().map_or(0, |most| usize::from(*most) + 1);
         let mut yarn_lengths_m = vec![0.0; kinds];
         for (y, kind) in network.yarn_kind.iter().enumerate() {
-            yarn_lengths_m[usize::from(*kind)] += network.length_of(YarnId::new(y)) / card.path_ratio;
+            yarn_lengths_m[usize::from(*kind)] +=
+                network.length_of(YarnId::new(y)) / card.path_ratio(network.yarn_role[y]);
         }
+        let masses = (0..).zip(&yarn_lengths_m).map(|(kind, length)| length * yarns.of(kind).linear_density);
+        let yarn_masses_kg: Vec<f64> = masses.collect();
         let mut floats = network.floats.clone();
         floats.sort_unstable_by(|a, b| b.cmp(a));
         Self {
@@ -78,9 +83,10 @@ impl Census {
             nodes_by_stack_size,
             passes: network.pass_count(),
             degrees_of_freedom: 3 * network.node_count() + sliding,
-            yarn_length_m: yarn_length,
+            yarn_length_m: yarn_lengths_m.iter().sum(),
+            mass_kg: yarn_masses_kg.iter().sum(),
+            yarn_masses_kg,
             yarn_lengths_m,
-            mass_kg: yarn_length * yarn.linear_density,
         }
     }
 }
@@ -96,9 +102,10 @@ impl Census {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::{KnitCard, YarnCard};
     use crate::pattern::{Chart, Side, Working, knit};
 
-    fn cards() -> (YarnCard, FabricCard) {
+    fn cards() -> (YarnCard, KnitCard) {
         let yarn = YarnCard {
             linear_density: 4e-4,
             radius: 8e-4,
@@ -110,7 +117,7 @@ mod tests {
             plies: 2,
             twist: 200.0,
         };
-        let fabric = FabricCard {
+        let fabric = KnitCard {
             loop_length: 16e-3,
             path_ratio: 0.8,
             transition_length: 0.0,

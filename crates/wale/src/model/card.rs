@@ -1,155 +1,104 @@
-//! Yarn and fabric cards: every number the mechanics need, in SI units.
+//! What a fabric is like, knitted or woven.
 
-/// A yarn.
+use super::{KnitCard, WovenCard, YarnRole};
+
+/// The card of a fabric.
 #[derive(Clone, Debug, PartialEq)]
-pub struct YarnCard {
-    /// Linear density \[kg/m\] (1 tex = 1e-6 kg/m).
-    pub linear_density: f64,
-    /// Radius \[m\].
-    pub radius: f64,
-    /// Stretch stiffness `k_s = EA` \[N\].
-    pub stretch_stiffness: f64,
-    /// Bending stiffness `k_b = EI` \[N·m²\].
-    pub bending_stiffness: f64,
-    /// Coefficient of sliding friction between yarns \[–\].
-    pub friction_coefficient: f64,
-    /// Mass damping `α` \[1/s\].
-    pub mass_damping: f64,
-    /// Stiffness damping `β` \[s\], acting on the rates of stretch, bend and wrap.
-    pub stiffness_damping: f64,
-    /// Ply count drawn in pictures.
-    pub plies: u32,
-    /// Twist drawn in pictures \[turns/m\].
-    pub twist: f64,
+pub enum FabricCard {
+    /// A knitted one.
+    Knit(KnitCard),
+    /// A woven one.
+    Woven(WovenCard),
 }
 
-/// A knitted fabric: the size of its stitches and the stiffnesses of the contact model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FabricCard {
-    /// Length `ℓ` of one loop along the model's yarn \[m\].
-    pub loop_length: f64,
-    /// Length along the model's yarn per length of real yarn \[–\], in (0, 1] as a rule: the straight segments cut
-    /// the corners of real loops. A metre of the model weighs `linear_density / path_ratio`.
-    pub path_ratio: f64,
-    /// Extra loop length per knit–purl change within a row, as a fraction of `ℓ` \[–\].
-    pub transition_length: f64,
-    /// Rest length `L` of a stitch contact \[m\].
-    pub stitch_length: f64,
-    /// Initial spacing of wales `W` \[m\].
-    pub wale_spacing: f64,
-    /// Initial spacing of courses `C` \[m\].
-    pub course_spacing: f64,
-    /// Wrapping stiffness `k_w` \[N\].
-    pub wrapping_stiffness: f64,
-    /// Rest wrapping angle of the course pair `ψ₀` \[rad\].
-    pub wrapping_angle_course: f64,
-    /// Rest wrapping angle of the leg pair `ψ₀` \[rad\].
-    pub wrapping_angle_leg: f64,
-    /// Rest bend angle of foot and head passes \[rad\].
-    pub bend_angle_foot_head: f64,
-    /// Rest bend angle of leg passes \[rad\].
-    pub bend_angle_leg: f64,
-    /// Stiffness of the stitch length `k_l` \[N\].
-    pub length_stiffness: f64,
+impl FabricCard {
+    /// The card of a knitted fabric, if it is one.
+    #[must_use]
+    pub fn knit(&self) -> Option<&KnitCard> {
+        match self {
+            Self::Knit(card) => Some(card),
+            Self::Woven(_) => None,
+        }
+    }
+
+    /// The same to change it.
+    pub fn knit_mut(&mut self) -> Option<&mut KnitCard> {
+        match self {
+            Self::Knit(card) => Some(card),
+            Self::Woven(_) => None,
+        }
+    }
+
+    /// The card of a woven fabric, if it is one.
+    #[must_use]
+    pub fn woven(&self) -> Option<&WovenCard> {
+        match self {
+            Self::Knit(_) => None,
+            Self::Woven(card) => Some(card),
+        }
+    }
+
+    /// Length along the model's yarn per length of real yarn \[–\]: a metre of the model weighs as much more.
+    #[must_use]
+    pub fn path_ratio(&self, role: YarnRole) -> f64 {
+        match (self, role) {
+            (Self::Knit(card), _) => card.path_ratio,
+            (Self::Woven(card), YarnRole::Weft) => 1.0 / (1.0 + card.crimp[1]),
+            (Self::Woven(card), _) => 1.0 / (1.0 + card.crimp[0]),
+        }
+    }
+
     /// Stiffness of the spacing barrier `k_c` \[N\].
-    pub spacing_stiffness: f64,
-    /// Spacing distance of legs `d` \[m\].
-    pub spacing_leg: f64,
-    /// Spacing distance of heads and sinkers `d` \[m\].
-    pub spacing_head_sinker: f64,
+    #[must_use]
+    pub fn spacing_stiffness(&self) -> f64 {
+        match self {
+            Self::Knit(card) => card.spacing_stiffness,
+            Self::Woven(card) => card.spacing_stiffness,
+        }
+    }
+
     /// Stiffness of the friction anchors `k_f` \[N/m\].
-    pub anchor_stiffness: f64,
+    #[must_use]
+    pub fn anchor_stiffness(&self) -> f64 {
+        match self {
+            Self::Knit(card) => card.anchor_stiffness,
+            Self::Woven(card) => card.anchor_stiffness,
+        }
+    }
+
     /// Smallest compression of a contact `λ_min` \[N\].
-    pub residual_compression: f64,
-}
+    #[must_use]
+    pub fn residual_compression(&self) -> f64 {
+        match self {
+            Self::Knit(card) => card.residual_compression,
+            Self::Woven(card) => card.residual_compression,
+        }
+    }
 
-/// The shape of a relaxed loop in proportion to its length, and the stiffnesses that go with it: what a fabric card
-/// is made of when only the yarn and the loop length are known.
-///
-/// The default is fitted to measured swatches of seven knit and purl patterns in one yarn: relative to stockinette
-/// their relaxed widths and heights come within 0.10 (root mean square of the logarithms), the 1×1 rib a quarter too
-/// wide. `tests/relaxed_sizes.rs` prints the table.
-#[derive(Clone, Debug, PartialEq)]
-pub struct LoopProportions {
-    /// Rest length of a stitch contact `L/ℓ` \[–\].
-    pub stitch_length: f64,
-    /// Wrapping stiffness `k_w L ℓ/k_b` \[–\].
-    pub wrapping: f64,
-    /// Rest wrapping angle of the course pair \[rad\].
-    pub wrapping_angle_course: f64,
-    /// Rest wrapping angle of the leg pair \[rad\].
-    pub wrapping_angle_leg: f64,
-    /// Rest bend angle of foot and head passes \[rad\].
-    pub bend_angle_foot_head: f64,
-    /// Rest bend angle of leg passes \[rad\].
-    pub bend_angle_leg: f64,
-    /// Spacing distance of legs `d/ℓ` \[–\].
-    pub spacing_leg: f64,
-    /// Spacing distance of heads and sinkers `d/ℓ` \[–\].
-    pub spacing_head_sinker: f64,
-    /// Extra loop length per knit–purl change within a row \[–\].
-    pub transition_length: f64,
-    /// Wale spacing of relaxed stockinette `W/ℓ` \[–\].
-    pub wale_spacing: f64,
-    /// Course spacing of relaxed stockinette `C/ℓ` \[–\].
-    pub course_spacing: f64,
-    /// Length along the model's yarn per length of real yarn \[–\].
-    pub path_ratio: f64,
-}
-
-impl Default for LoopProportions {
-    fn default() -> Self {
-        Self {
-            stitch_length: 0.0971,
-            wrapping: 2.147,
-            wrapping_angle_course: 2.087,
-            wrapping_angle_leg: 1.569,
-            bend_angle_foot_head: 0.463,
-            bend_angle_leg: 1.112,
-            spacing_leg: 0.2113,
-            spacing_head_sinker: 0.0680,
-            transition_length: 0.085,
-            wale_spacing: 0.2993,
-            course_spacing: 0.2578,
-            // Relaxed plain knit has W = ℓ/4.2 and C = ℓ/5.5 in real yarn (textile constants of fully relaxed cloth), the model the W and C above:
-            // 0.795 and 0.705, of which this is the mean.
-            path_ratio: 0.75,
+    /// Width and height of a stitch or of a crossing in the layout \[m\].
+    #[must_use]
+    pub fn cell(&self) -> [f64; 2] {
+        match self {
+            Self::Knit(card) => [card.wale_spacing, card.course_spacing],
+            Self::Woven(card) => card.spacing,
         }
     }
 }
 
-impl LoopProportions {
-    /// Spacing stiffness in proportion to stretch stiffness \[–\]; relaxed sizes hardly depend on it.
-    const SPACING_TO_STRETCH: f64 = 1.0 / 15.0;
-    /// Anchor stiffness `k_f W/k_s` \[–\].
-    const ANCHOR_TO_STRETCH: f64 = 0.1;
-    /// Smallest compression in units of `k_b/ℓ²` \[–\]: 2 mN for a yarn of 0.5 mm radius, and as much in
-    /// proportion for others.
-    const RESIDUAL_COMPRESSION: f64 = 230.0;
+impl From<&KnitCard> for FabricCard {
+    fn from(card: &KnitCard) -> Self {
+        Self::Knit(card.clone())
+    }
+}
 
-    /// The card of a fabric of this yarn whose loops are `loop_length` \[m\] long along the model's yarn.
-    #[must_use]
-    pub fn card(&self, yarn: &YarnCard, loop_length: f64) -> FabricCard {
-        let force = yarn.bending_stiffness / (loop_length * loop_length);
-        let wale_spacing = self.wale_spacing * loop_length;
-        FabricCard {
-            loop_length,
-            path_ratio: self.path_ratio,
-            transition_length: self.transition_length,
-            stitch_length: self.stitch_length * loop_length,
-            wale_spacing,
-            course_spacing: self.course_spacing * loop_length,
-            wrapping_stiffness: self.wrapping / self.stitch_length * force,
-            wrapping_angle_course: self.wrapping_angle_course,
-            wrapping_angle_leg: self.wrapping_angle_leg,
-            bend_angle_foot_head: self.bend_angle_foot_head,
-            bend_angle_leg: self.bend_angle_leg,
-            length_stiffness: yarn.stretch_stiffness,
-            spacing_stiffness: Self::SPACING_TO_STRETCH * yarn.stretch_stiffness,
-            spacing_leg: self.spacing_leg * loop_length,
-            spacing_head_sinker: self.spacing_head_sinker * loop_length,
-            anchor_stiffness: Self::ANCHOR_TO_STRETCH * yarn.stretch_stiffness / wale_spacing,
-            residual_compression: Self::RESIDUAL_COMPRESSION * force,
-        }
+impl From<&WovenCard> for FabricCard {
+    fn from(card: &WovenCard) -> Self {
+        Self::Woven(card.clone())
+    }
+}
+
+impl From<&FabricCard> for FabricCard {
+    fn from(card: &FabricCard) -> Self {
+        card.clone()
     }
 }

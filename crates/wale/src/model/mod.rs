@@ -3,17 +3,25 @@
 pub mod card;
 pub mod frame;
 pub mod ids;
+pub mod knit_card;
 pub mod motion;
 pub mod network;
 pub mod plan;
 pub mod selection;
+pub mod woven_card;
+pub mod yarn_card;
 
-pub use card::{FabricCard, LoopProportions, YarnCard};
+pub use card::FabricCard;
 pub use frame::Frame;
 pub use ids::{NodeId, PassId, StitchId, YarnId};
+pub use knit_card::{KnitCard, LoopProportions};
 pub use motion::{Motion, Pose};
-pub use network::{ContactPair, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair};
+pub use network::{
+    ContactPair, Crossing, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair, YarnRole,
+};
 pub use plan::{
     Drive, ExportFormat, Grip, LinearSolver, Obstacle, Output, Pictures, Placement, Plan, Shape, Simulation,
 };
 pub use selection::{Edge, Selection};
+pub use woven_card::{WovenCard, WovenGeometry};
+pub use yarn_card::{YarnCard, Yarns};

@@ -11,8 +11,21 @@ pub enum PassKind {
     FootHead,
     /// Between a stitch contact and a leg.
     Leg,
+    /// Where warp and weft cross: rest straight.
+    Crossing,
     /// Cast-on ties, selvedge turns, bind-off and yarn ends: rest straight.
     Edge,
+}
+
+/// What a yarn is in its fabric.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Hash)]
+pub enum YarnRole {
+    /// It is knitted.
+    Knitted,
+    /// It is the end or the ends of a warp.
+    Warp,
+    /// It is a pick, or goes from pick to pick.
+    Weft,
 }
 
 /// What a segment (from a pass to the next pass of its yarn) is part of; it decides the spacing distance.
@@ -30,6 +43,10 @@ pub enum SegmentKind {
     Edge,
     /// Cast-on and bind-off between two stitches: a chain of loops in the real fabric, one strand here.
     Chain,
+    /// Between two crossings on different sides of the fabric.
+    Interlacing,
+    /// Between two crossings on the same side.
+    Float,
 }
 
 /// Which of a stitch contact's two opposite pairs wraps.
@@ -67,6 +84,17 @@ pub struct StitchContact {
     pub wrap_sign: f64,
     /// The pairs that wrap.
     pub pairs: Vec<WrapPair>,
+}
+
+/// Where a warp end and a weft pick cross.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crossing {
+    /// Its node.
+    pub node: NodeId,
+    /// The pass of the warp.
+    pub warp: PassId,
+    /// The pass of the weft.
+    pub weft: PassId,
 }
 
 /// A pass next to another along a yarn.
@@ -124,6 +152,8 @@ pub struct Network {
     pub yarn_color: Vec<[u8; 3]>,
     /// Which of the fabric's yarns each yarn is a length of.
     pub yarn_kind: Vec<u8>,
+    /// What each yarn is in the fabric.
+    pub yarn_role: Vec<YarnRole>,
     /// First entry of each node's stack in `stack_pass`; one entry more than there are nodes.
     pub stack_start: Vec<u32>,
     /// Passes of each node's stack, front to back as seen from the right side of the fabric.
@@ -136,7 +166,9 @@ pub struct Network {
     pub chart_place: Vec<[f64; 2]>,
     /// Stitch contacts.
     pub stitches: Vec<StitchContact>,
-    /// Loops of the chart.
+    /// Crossings of warp and weft.
+    pub crossings: Vec<Crossing>,
+    /// Loops of the chart, or crossings of the draft: what is a knit there has the warp in front.
     pub loops: Vec<LoopInfo>,
     /// How many places of the needle each float passes, in the order of the yarns; strands that pass none are no floats.
     pub floats: Vec<u32>,

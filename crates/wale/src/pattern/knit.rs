@@ -9,7 +9,7 @@ use super::rest_lengths::{RestLengths, Segment};
 use super::stacks::{self, Made};
 use super::work::{work, work_tile};
 use super::working::Working;
-use crate::model::{FabricCard, LoopInfo, Network, NodeId, PassKind, SegmentKind};
+use crate::model::{KnitCard, LoopInfo, Network, NodeId, PassKind, SegmentKind, YarnRole};
 
 /// The four own nodes of a loop, left to right along its yarn.
 pub(super) const LEFT_FOOT: usize = 0;
@@ -22,7 +22,7 @@ pub(super) const RIGHT_FOOT: usize = 3;
 
 /// Builds a finite fabric: cast-on, the rows of the chart, bind-off.
 #[must_use]
-pub fn fabric(chart: &Chart, working: Working, card: &FabricCard) -> Network {
+pub fn fabric(chart: &Chart, working: Working, card: &KnitCard) -> Network {
     network(&work(chart, working), card)
 }
 
@@ -31,13 +31,13 @@ pub fn fabric(chart: &Chart, working: Working, card: &FabricCard) -> Network {
 ///
 /// # Errors
 /// If the chart cannot be repeated without end.
-pub fn tile(chart: &Chart, card: &FabricCard) -> Result<Network, ChartError> {
+pub fn tile(chart: &Chart, card: &KnitCard) -> Result<Network, ChartError> {
     Ok(network(&work_tile(chart)?, card))
 }
 
 /// Builds the network of a graph of loops.
 #[must_use]
-pub fn network(graph: &LoopGraph, card: &FabricCard) -> Network {
+pub fn network(graph: &LoopGraph, card: &KnitCard) -> Network {
     Builder::new(graph, card).build()
 }
 
@@ -55,7 +55,7 @@ struct Step {
 
 struct Builder<'a> {
     graph: &'a LoopGraph,
-    card: &'a FabricCard,
+    card: &'a KnitCard,
     layout: Layout,
     rest: RestLengths,
     /// First own node of each loop (of a cast-on its tie); unused where there is none.
@@ -67,7 +67,7 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn new(graph: &'a LoopGraph, card: &'a FabricCard) -> Self {
+    fn new(graph: &'a LoopGraph, card: &'a KnitCard) -> Self {
         let columns = graph.size[1] as usize;
         let round = graph.form == Form2d::Tube;
         let layout = Layout::new(columns, card.wale_spacing, card.course_spacing, round);
@@ -396,6 +396,7 @@ impl<'a> Builder<'a> {
         self.network.yarn_start.push(u32::try_from(self.network.pass_count()).expect("charts are limited to 32 bits"));
         self.network.yarn_closure.push(closure);
         self.network.yarn_kind.push(yarn);
+        self.network.yarn_role.push(YarnRole::Knitted);
         self.network.yarn_color.push(YARN_COLORS[usize::from(yarn) % YARN_COLORS.len()]);
     }
 }

@@ -1,4 +1,4 @@
-//! Stitch charts and what is made of them; this room knows no force.
+//! Stitch charts, drafts and what is made of them; this room knows no force.
 
 pub mod chart;
 pub mod image;
@@ -19,6 +19,7 @@ pub mod stitch;
 mod strands;
 pub mod structure;
 pub mod symbols;
+pub mod weave;
 pub mod work;
 pub mod working;
 

@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::loops::{Form, Loop};
-use crate::model::{FabricCard, SegmentKind};
+use crate::model::{KnitCard, SegmentKind};
 
 /// A segment before its length is known.
 #[derive(Clone, Copy)]
@@ -33,7 +33,7 @@ pub(super) struct RestLengths {
 }
 
 impl RestLengths {
-    pub fn new(card: &FabricCard, layout: &Layout) -> Self {
+    pub fn new(card: &KnitCard, layout: &Layout) -> Self {
         let [leg, head, sinker] = layout.between_contacts();
         let laid = 2.0 * leg + head + sinker;
         let slack = (card.loop_length - 4.0 * card.stitch_length) / laid;
@@ -73,7 +73,7 @@ impl RestLengths {
         let [leg, head, sinker] = self.parts;
         let own = match kind {
             SegmentKind::Stitch => self.stitch / f64::from(share),
-            SegmentKind::Edge | SegmentKind::Chain => distance,
+            SegmentKind::Edge | SegmentKind::Chain | SegmentKind::Interlacing | SegmentKind::Float => distance,
             SegmentKind::Leg => leg,
             SegmentKind::Head => head / f64::from(share),
             SegmentKind::Sinker => sinker,

@@ -1,8 +1,9 @@
-//! What a fabric is made by: a chart that hands work, or a program that a machine works.
+//! What a fabric is made by: a chart that hands work, a program that a machine works, or a draft on a loom.
 
 use super::chart::Chart;
 use super::knit;
 use super::knitout::{KnitoutError, Knitted, read_knitout};
+use super::weave::Woven;
 use super::working::Working;
 use crate::model::{FabricCard, Network};
 
@@ -18,6 +19,8 @@ pub enum Structure {
     },
     /// A program in knitout.
     Machine(Box<Program>),
+    /// A draft on a loom.
+    Woven(Box<Woven>),
 }
 
 /// A program in knitout and what it becomes.
@@ -51,7 +54,7 @@ impl Structure {
     pub fn chart(&self) -> Option<&Chart> {
         match self {
             Self::Chart { chart, .. } => Some(chart),
-            Self::Machine(_) => None,
+            Self::Machine(_) | Self::Woven(_) => None,
         }
     }
 
@@ -67,6 +70,7 @@ impl Structure {
         match self {
             Self::Chart { chart, .. } => [chart.row_count(), chart.column_count()],
             Self::Machine(program) => program.knitted.graph.size.map(|n| n as usize),
+            Self::Woven(woven) => [woven.draft.picks(), woven.draft.ends()],
         }
     }
 
@@ -76,24 +80,39 @@ impl Structure {
         match self {
             Self::Chart { chart, .. } => chart.yarn_count(),
             Self::Machine(program) => program.knitted.carriers.len(),
+            Self::Woven(woven) => woven.draft.yarn_count(),
         }
     }
 
     /// What a program does that is unusual but can be knitted, with its line.
     pub fn remarks(&self) -> impl Iterator<Item = (usize, &str)> {
         let remarks = match self {
-            Self::Chart { .. } => &[][..],
+            Self::Chart { .. } | Self::Woven(_) => &[][..],
             Self::Machine(program) => &program.knitted.remarks,
         };
         remarks.iter().map(|remark| (remark.line, remark.what.as_str()))
     }
 
+    /// The draft, if it is woven.
+    #[must_use]
+    pub fn woven(&self) -> Option<&Woven> {
+        match self {
+            Self::Woven(woven) => Some(woven),
+            _ => None,
+        }
+    }
+
     /// The network of its plain layout.
+    ///
+    /// # Panics
+    /// If the card is that of a knit and the structure woven, or the other way round.
     #[must_use]
     pub fn network(&self, card: &FabricCard) -> Network {
-        match self {
-            Self::Chart { chart, working } => knit::fabric(chart, *working, card),
-            Self::Machine(program) => knit::network(&program.knitted.graph, card),
+        match (self, card) {
+            (Self::Chart { chart, working }, FabricCard::Knit(card)) => knit::fabric(chart, *working, card),
+            (Self::Machine(program), FabricCard::Knit(card)) => knit::network(&program.knitted.graph, card),
+            (Self::Woven(woven), FabricCard::Woven(card)) => woven.network(card.spacing),
+            _ => panic!("a knit has the card of a knit, and a weave that of a weave"),
         }
     }
 }

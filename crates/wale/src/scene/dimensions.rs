@@ -101,6 +101,11 @@ dimension!(
     "1/m", "turns/m" = 1.0, "tpm" = 1.0, "turns/cm" = 100.0, "turns/in" = 1.0 / INCH, "tpi" = 1.0 / INCH
 );
 dimension!(
+    /// Threads per length \[1/m\].
+    ThreadCount, "a thread count", "\"24 /cm\"", at most 1e6,
+    "1/m", "1/cm" = 100.0, "/cm" = 100.0, "1/in" = 1.0 / INCH, "/in" = 1.0 / INCH, "epi" = 1.0 / INCH, "ppi" = 1.0 / INCH
+);
+dimension!(
     /// Drag force per length of yarn and speed \[Pa·s\].
     Drag, "a drag", "\"0.001 Pa s\"", at most 1e6,
     "Pa s", "mPa s" = 1e-3, "N s/m^2" = 1.0, "kg/(m s)" = 1.0

@@ -36,8 +36,9 @@ use std::path::{Path, PathBuf};
 
 pub use error::{ErrorClass, SceneError};
 
-use crate::model::{FabricCard, Network, Plan, YarnCard};
+use crate::model::{FabricCard, Network, Plan, Yarns};
 use crate::pattern::Structure;
+use crate::pattern::weave::Woven;
 use error::{Complaint, nearest};
 use resolve::Failure;
 use schema::{PresetName, SceneText};
@@ -53,9 +54,9 @@ pub const LARGEST_FILE: usize = 16 << 20;
 pub struct Scene {
     /// Title for reports, perhaps empty.
     pub title: String,
-    /// The yarn.
-    pub yarn: YarnCard,
-    /// Colours of the chart's yarns as sRGB, at least one.
+    /// The yarns.
+    pub yarns: Yarns,
+    /// Their colours as sRGB, at least one.
     pub yarn_colors: Vec<[u8; 3]>,
     /// The fabric.
     pub fabric: FabricCard,
@@ -80,6 +81,11 @@ impl Scene {
         let first = self.yarn_colors.first().copied().unwrap_or([0x8a; 3]);
         for (color, kind) in network.yarn_color.iter_mut().zip(&network.yarn_kind) {
             *color = self.yarn_colors.get(usize::from(*kind)).copied().unwrap_or(first);
+        }
+        // Threads of a draft may have colours of their own.
+        let threads = self.structure.woven().map(Woven::threads).unwrap_or_default();
+        for (color, thread) in network.yarn_color.iter_mut().zip(threads) {
+            *color = thread.color.unwrap_or(*color);
         }
     }
 

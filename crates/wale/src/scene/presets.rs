@@ -39,7 +39,7 @@ mod tests {
         for preset in PresetName::ALL {
             let text = text_of_preset(preset);
             let scene = Scene::from_text(&text, "preset.toml").unwrap_or_else(|error| panic!("{error}"));
-            let (yarn, card) = (&scene.yarn, &scene.fabric);
+            let (yarn, card) = (scene.yarns.first(), scene.fabric.knit().unwrap());
             assert!(!preset.title().is_empty());
             // Areal mass of relaxed stockinette [kg/m²]: from a thin T-shirt to a thick hand-knit.
             let loop_mass = yarn.linear_density / card.path_ratio * card.loop_length;

@@ -1,6 +1,7 @@
 //! Good scenes read, bad ones say what is wrong and where, and what is written reads back.
 
 mod refusals;
+mod weaves;
 
 use super::*;
 use crate::model::{Drive, Edge, Selection, Shape};
@@ -18,7 +19,7 @@ fn chart_of(scene: &Scene) -> &Chart {
 fn working_of(scene: &Scene) -> Working {
     match scene.structure {
         Structure::Chart { working, .. } => working,
-        Structure::Machine(_) => panic!("a machine's program"),
+        _ => panic!("no chart"),
     }
 }
 
@@ -31,11 +32,11 @@ fn five_lines_are_a_scene() {
     let scene = read(CHART);
     assert_eq!(scene.structure.size(), [4, 6]);
     assert_eq!(working_of(&scene), Working::default());
-    assert_eq!(scene.yarn.linear_density, 500e-6);
+    assert_eq!(scene.yarns.first().linear_density, 500e-6);
     // The fabric card follows from yarn and loop length in the default proportions.
     let proportions = crate::model::LoopProportions::default();
-    let card = &scene.fabric;
-    let wrap = card.wrapping_stiffness * card.stitch_length * card.loop_length / scene.yarn.bending_stiffness;
+    let card = scene.fabric.knit().unwrap();
+    let wrap = card.wrapping_stiffness * card.stitch_length * card.loop_length / scene.yarns.first().bending_stiffness;
     assert!((wrap - proportions.wrapping).abs() < 1e-12);
     assert!((card.loop_length - proportions.path_ratio * 0.02).abs() < 1e-15);
     assert_eq!(scene.plan.simulation.gravity, DVec3::new(0.0, 0.0, -9.80665));
@@ -63,31 +64,31 @@ fn the_template_is_a_scene_and_says_the_defaults_in_its_comments() {
 #[test]
 fn a_yarn_of_ones_own_goes_before_the_preset() {
     let scene = read(&format!("[yarn]\npreset = \"thick-acrylic\"\npacking = 0.5\nfibre_density = 1180\n{CHART}"));
-    let area = std::f64::consts::PI * scene.yarn.radius * scene.yarn.radius;
-    assert!((scene.yarn.linear_density / area - 590.0).abs() < 1e-9, "packing replaces the preset's diameter");
+    let area = std::f64::consts::PI * scene.yarns.first().radius * scene.yarns.first().radius;
+    assert!((scene.yarns.first().linear_density / area - 590.0).abs() < 1e-9, "packing replaces the preset's diameter");
     let scene =
         read(&format!("[yarn]\ndiameter = \"1 mm\"\nelastic_modulus = \"10 MPa\"\nbending_modulus = 1e-3\n{CHART}"));
-    assert!((scene.yarn.stretch_stiffness - 7.853_981_633_974_483).abs() < 1e-12);
-    assert!((scene.yarn.bending_stiffness - 7.853_981_633_974_483e-10).abs() < 1e-22);
+    assert!((scene.yarns.first().stretch_stiffness - 7.853_981_633_974_483).abs() < 1e-12);
+    assert!((scene.yarns.first().bending_stiffness - 7.853_981_633_974_483e-10).abs() < 1e-22);
 }
 
 #[test]
 fn the_papers_table_is_taken_in_true_units() {
     let table = "[fabric.paper_table_1]\nloop_width = \"3 mm\"\nR = \"0.75 mm\"\nY = 1e7\nB = 1e-3\nk_w = 1e-2\n";
     let scene = read(&format!("{table}mu = 0.3\nalpha = 10\nbeta = 0.01\n{CHART}"));
-    assert!((scene.yarn.stretch_stiffness - 17.67).abs() < 0.01);
-    assert!((scene.yarn.bending_stiffness - 1.767e-9).abs() < 1e-12);
-    assert_eq!(scene.fabric.wrapping_stiffness, 1e-2);
-    assert_eq!(scene.fabric.wale_spacing, 3e-3);
-    assert_eq!((scene.yarn.mass_damping, scene.yarn.stiffness_damping), (10.0, 0.01));
+    assert!((scene.yarns.first().stretch_stiffness - 17.67).abs() < 0.01);
+    assert!((scene.yarns.first().bending_stiffness - 1.767e-9).abs() < 1e-12);
+    assert_eq!(scene.fabric.knit().unwrap().wrapping_stiffness, 1e-2);
+    assert_eq!(scene.fabric.knit().unwrap().wale_spacing, 3e-3);
+    assert_eq!((scene.yarns.first().mass_damping, scene.yarns.first().stiffness_damping), (10.0, 0.01));
 }
 
 #[test]
 fn stitch_size_may_stand_in_place_of_the_loop_length() {
     let scene = read(&format!("[fabric]\nwale_spacing = \"5 mm\"\n{CHART}"));
     let proportions = crate::model::LoopProportions::default();
-    assert!((scene.fabric.loop_length - 5e-3 / proportions.wale_spacing).abs() < 1e-15);
-    assert_eq!(scene.fabric.wale_spacing, 5e-3);
+    assert!((scene.fabric.knit().unwrap().loop_length - 5e-3 / proportions.wale_spacing).abs() < 1e-15);
+    assert_eq!(scene.fabric.knit().unwrap().wale_spacing, 5e-3);
 }
 
 #[test]

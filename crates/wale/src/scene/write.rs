@@ -7,11 +7,12 @@ use glam::{DQuat, DVec3};
 use super::schema::{
     Axes, AxisAngle, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText, KeyText,
     MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
-    SimulationText, SphereText, Worked, YarnText,
+    SelvedgeText, SimulationText, SphereText, WeaveText, Worked, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
-use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
+use crate::model::{Drive, Edge, FabricCard, Grip, Motion, Obstacle, Selection, Shape, WovenCard};
+use crate::pattern::weave::{Selvedge, Thread, Woven};
 use crate::pattern::{Chart, Side, Stitch, Structure, Working};
 
 /// A number that is out of the bounds of the scene format, in words.
@@ -22,8 +23,8 @@ pub(super) fn text_of(scene: &Scene) -> Written<SceneText> {
     Ok(SceneText {
         schema: SCHEMA,
         title: Some(scene.title.clone()),
-        yarn: Some(yarn(scene)?),
-        yarns: other_yarns(scene),
+        yarn: Some(yarn(scene, 0)?),
+        yarns: other_yarns(scene)?,
         fabric: fabric(scene)?,
         simulation: Some(simulation(scene)?),
         output: Some(output(scene)?),
@@ -49,8 +50,9 @@ fn quaternion(value: DQuat) -> Written<Option<AxisAngle>> {
     Ok(Some(AxisAngle { axis: None, angle: None, quaternion: Some([of(x)?, of(y)?, of(z)?, of(w)?]) }))
 }
 
-fn yarn(scene: &Scene) -> Written<YarnText> {
-    let card = &scene.yarn;
+/// A yarn by its number.
+fn yarn(scene: &Scene, number: usize) -> Written<YarnText> {
+    let card = scene.yarns.of(u8::try_from(number).unwrap_or(0));
     Ok(YarnText {
         preset: None,
         linear_density: some(card.linear_density)?,
@@ -64,7 +66,7 @@ fn yarn(scene: &Scene) -> Written<YarnText> {
         friction: some(card.friction_coefficient)?,
         mass_damping: some(card.mass_damping)?,
         stiffness_damping: some(card.stiffness_damping)?,
-        color: scene.yarn_colors.first().copied().map(Color),
+        color: scene.yarn_colors.get(number).copied().map(Color),
         plies: Some(card.plies),
         twist: some(card.twist)?,
     })
@@ -73,30 +75,73 @@ fn yarn(scene: &Scene) -> Written<YarnText> {
 fn fabric(scene: &Scene) -> Written<FabricText> {
     let card = &scene.fabric;
     let placement = scene.plan.placement;
-    Ok(FabricText {
-        loop_length: None,
-        path_ratio: some(card.path_ratio)?,
-        model_loop_length: some(card.loop_length)?,
-        wale_spacing: some(card.wale_spacing)?,
-        course_spacing: some(card.course_spacing)?,
-        transition_length: some(card.transition_length)?,
-        stitch_length: some(card.stitch_length)?,
-        wrapping_stiffness: some(card.wrapping_stiffness)?,
-        wrapping_angle_course: some(card.wrapping_angle_course)?,
-        wrapping_angle_leg: some(card.wrapping_angle_leg)?,
-        bend_angle_foot_head: some(card.bend_angle_foot_head)?,
-        bend_angle_leg: some(card.bend_angle_leg)?,
-        length_stiffness: some(card.length_stiffness)?,
-        spacing_stiffness: some(card.spacing_stiffness)?,
-        spacing_leg: some(card.spacing_leg)?,
-        spacing_head_sinker: some(card.spacing_head_sinker)?,
-        anchor_stiffness: some(card.anchor_stiffness)?,
-        residual_compression: some(card.residual_compression)?,
-        paper_table_1: None,
+    let common = FabricText {
+        spacing_stiffness: some(card.spacing_stiffness())?,
+        anchor_stiffness: some(card.anchor_stiffness())?,
+        residual_compression: some(card.residual_compression())?,
         center: Some(vector(placement.center)?),
-        stance: None,
         rotation: quaternion(placement.rotation)?,
-        chart: Some(chart(scene)),
+        ..FabricText::default()
+    };
+    match (card, &scene.structure) {
+        (FabricCard::Knit(card), _) => Ok(FabricText {
+            path_ratio: some(card.path_ratio)?,
+            model_loop_length: some(card.loop_length)?,
+            wale_spacing: some(card.wale_spacing)?,
+            course_spacing: some(card.course_spacing)?,
+            transition_length: some(card.transition_length)?,
+            stitch_length: some(card.stitch_length)?,
+            wrapping_stiffness: some(card.wrapping_stiffness)?,
+            wrapping_angle_course: some(card.wrapping_angle_course)?,
+            wrapping_angle_leg: some(card.wrapping_angle_leg)?,
+            bend_angle_foot_head: some(card.bend_angle_foot_head)?,
+            bend_angle_leg: some(card.bend_angle_leg)?,
+            length_stiffness: some(card.length_stiffness)?,
+            spacing_leg: some(card.spacing_leg)?,
+            spacing_head_sinker: some(card.spacing_head_sinker)?,
+            chart: Some(chart(scene)),
+            ..common
+        }),
+        (FabricCard::Woven(card), Structure::Woven(woven)) => {
+            Ok(FabricText { weave: Some(weave(woven, card)?), ..common })
+        }
+        (FabricCard::Woven(_), _) => Err("a woven fabric without a draft".to_owned()),
+    }
+}
+
+fn pair<D: Dimension, B: Bounds>([first, second]: [f64; 2]) -> Written<Option<[Quantity<D, B>; 2]>> {
+    Ok(Some([of(first)?, of(second)?]))
+}
+
+fn weave(woven: &Woven, card: &WovenCard) -> Written<WeaveText> {
+    let draft = &woven.draft;
+    let repeat = draft.smallest_repeat();
+    let names = |threads: &[Thread]| Some(threads.iter().map(|thread| name(thread.yarn).to_string()).collect());
+    // Either all threads of a system have a colour of their own, or none.
+    let colors = |threads: &[Thread]| threads.iter().map(|thread| thread.color.map(Color)).collect();
+    Ok(WeaveText {
+        symbols: Some(repeat.lines()),
+        ends: Some(draft.ends() as u64),
+        picks: Some(draft.picks() as u64),
+        end_spacing: some(card.spacing[0])?,
+        pick_spacing: some(card.spacing[1])?,
+        selvedge: Some(match woven.selvedge {
+            Selvedge::Woven => SelvedgeText::Woven,
+            Selvedge::Cut => SelvedgeText::Cut,
+        }),
+        warp_fringe: some(woven.fringe[0])?,
+        weft_fringe: some(woven.fringe[1])?,
+        warp: names(&repeat.warp),
+        weft: names(&repeat.weft),
+        warp_colors: colors(&repeat.warp),
+        weft_colors: colors(&repeat.weft),
+        crimp: pair(card.crimp)?,
+        crimp_height: pair(card.crimp_height)?,
+        interlacing_spacing: pair(card.interlacing_spacing)?,
+        float_spacing: pair(card.float_spacing)?,
+        shear_stiffness: some(card.shear_stiffness)?,
+        shear_jamming_angle: some(card.shear_jamming_angle)?,
+        ..WeaveText::default()
     })
 }
 
@@ -107,6 +152,7 @@ fn chart(scene: &Scene) -> ChartText {
         Structure::Machine(program) => {
             return ChartText { knitout: Some(program.text.clone()), ..ChartText::default() };
         }
+        Structure::Woven(_) => return ChartText::default(),
     };
     let (worked, first_row) = match working {
         Working::Round => (Worked::Round, None),
@@ -151,15 +197,13 @@ fn name(yarn: u8) -> char {
 }
 
 /// The yarns after the first, by their letters.
-fn other_yarns(scene: &Scene) -> BTreeMap<String, OtherYarnText> {
-    let text = |color: &[u8; 3]| OtherYarnText { color: Some(Color(*color)) };
-    let others = scene.yarn_colors.iter().enumerate().skip(1);
-    // Letters name the yarns of a chart, carriers those of a program.
+fn other_yarns(scene: &Scene) -> Written<BTreeMap<String, OtherYarnText>> {
+    // Letters name the yarns of a chart and of a draft, carriers those of a program.
     let named = |at: usize| match &scene.structure {
-        Structure::Chart { .. } => name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(),
+        Structure::Chart { .. } | Structure::Woven(_) => name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(),
         Structure::Machine(program) => program.knitted.carriers.get(at).cloned().unwrap_or_default(),
     };
-    others.map(|(at, color)| (named(at), text(color))).collect()
+    (1..scene.yarn_colors.len()).map(|at| Ok((named(at), yarn(scene, at)?.into()))).collect()
 }
 
 fn simulation(scene: &Scene) -> Written<SimulationText> {

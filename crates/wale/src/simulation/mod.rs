@@ -18,7 +18,7 @@ use crate::dynamics::step::Touch;
 use crate::dynamics::system::{Energies, System, Workspace};
 use crate::energy::Load;
 use crate::fabric::coordinates::{BLOCK, dof};
-use crate::model::{FabricCard, Frame, Network, Plan, YarnCard};
+use crate::model::{FabricCard, Frame, Network, Plan, Yarns};
 
 /// A fabric on its way through time.
 pub struct Simulation {
@@ -86,9 +86,9 @@ const FAR_FROM_CONVERGED: f64 = 1.0;
 impl Simulation {
     /// Sets up a fabric at rest where its plan places it.
     #[must_use]
-    pub fn new(network: Network, yarn: &YarnCard, card: &FabricCard, plan: Plan) -> Self {
+    pub fn new(network: Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>, plan: Plan) -> Self {
         let network = placed(network, &plan);
-        let mut system = System::new(&network, yarn, card);
+        let mut system = System::new(&network, yarns, card);
         system.set_gravity(plan.simulation.gravity);
         let linear =
             LinearSettings { solver: plan.simulation.linear_solver, tolerance: plan.simulation.linear_tolerance };
@@ -238,13 +238,13 @@ impl Simulation {
         self.newton.set_free(&self.free);
         let newton = NewtonSettings {
             max_iterations: settings.newton_iterations as usize,
-            tolerance: settings.newton_tolerance * self.system.yarn.radius,
+            tolerance: settings.newton_tolerance * self.system.least_radius(),
         };
         let (obstacles, touches) = (&self.plan.obstacles, &self.touches);
         let report = self.newton.minimise(&mut self.system, &mut self.q, &newton, |system, q| {
             system.renew_touches(obstacles, q, end, touches);
         })?;
-        if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.yarn.radius {
+        if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.least_radius() {
             return Err(StepError::NotConverged { last_move: report.last_move });
         }
         Ok(report)

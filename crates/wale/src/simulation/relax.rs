@@ -33,7 +33,7 @@ impl Simulation {
     /// Velocities are forgotten at every step, so that only the damping of the yarn's own rates stands in the way, and
     /// the steps grow as long as Newton's method finds them easy.
     pub fn relax(&mut self) -> RelaxReport {
-        let keep = (self.plan.clone(), std::mem::take(&mut self.grips), self.system.yarn.stiffness_damping);
+        let keep = (self.plan.clone(), std::mem::take(&mut self.grips), self.system.stiffness_damping());
         self.plan.obstacles.clear();
         self.plan.simulation.friction = false;
         self.plan.simulation.newton_iterations = self.plan.simulation.newton_iterations.max(30);
@@ -53,7 +53,7 @@ impl Simulation {
     fn relax_steps(&mut self, damping: f64) -> RelaxReport {
         let mut report = RelaxReport { steps: 0, newton_iterations: 0, speed: f64::INFINITY, converged: false };
         let mut h = self.plan.simulation.largest_step;
-        let limit = AT_REST * self.system.yarn.radius / damping;
+        let limit = AT_REST * self.system.least_radius() / damping;
         let time = self.state.time;
         while report.steps < MOST_STEPS && h > self.plan.simulation.smallest_step {
             self.state.velocities.fill(0.0);

@@ -2,7 +2,7 @@
 
 use crate::dynamics::loop_shapes::lay_loop_shapes;
 use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
-use crate::model::{FabricCard, Network, YarnCard};
+use crate::model::{FabricCard, KnitCard, Network, Yarns};
 use crate::pattern::{Chart, Structure, knit};
 
 /// Most loops of a repeat that is relaxed for its loop shapes.
@@ -37,14 +37,16 @@ impl Start {
     /// [Cirio2017, section 4.1]. A chart whose smallest repeat is too large, or that does not repeat, and a
     /// machine's program keep the plain layout.
     #[must_use]
-    pub fn new(structure: &Structure, yarn: &YarnCard, card: &FabricCard, compensate: bool) -> Self {
-        let mut network = structure.network(card);
+    pub fn new(structure: &Structure, yarns: impl Into<Yarns>, card: impl Into<FabricCard>, compensate: bool) -> Self {
+        let (yarns, card) = (yarns.into(), card.into());
+        let mut network = structure.network(&card);
         let repeat = structure.chart().filter(|_| compensate).map(Chart::smallest_repeat);
         let repeat = repeat.filter(|repeat| repeat.loop_count() <= MOST_TILE_LOOPS);
-        let Some(tile) = repeat.and_then(|repeat| knit::tile(&repeat, card).ok()) else {
+        let tile = card.knit().zip(repeat).and_then(|(card, repeat)| Some((card, knit::tile(&repeat, card).ok()?)));
+        let Some((card, tile)) = tile else {
             return Self { network, compensation: None };
         };
-        let relaxed = relax_repeat(&tile, yarn, card);
+        let relaxed = relax_repeat(&tile, &yarns, card);
         lay_loop_shapes(&mut network, &tile, &relaxed, structure.is_round());
         let report = StartReport {
             width_change: relaxed.wale_spacing / card.wale_spacing,
@@ -56,8 +58,8 @@ impl Start {
 }
 
 /// Relaxes a repeat from several starts and returns the one of lowest energy.
-fn relax_repeat(tile: &Network, yarn: &YarnCard, card: &FabricCard) -> TileEquilibrium {
-    let run = |seed| relax_tile(tile, yarn, card, &TileSettings { seed, ..TileSettings::default() });
+fn relax_repeat(tile: &Network, yarns: &Yarns, card: &KnitCard) -> TileEquilibrium {
+    let run = |seed| relax_tile(tile, yarns, card, &TileSettings { seed, ..TileSettings::default() });
     let mut best = run(1);
     let starts = if tile.loops.len() > MANY_LOOPS { 1 } else { STARTS };
     for seed in 2..=starts {

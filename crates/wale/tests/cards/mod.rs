@@ -1,9 +1,9 @@
 //! A yarn and a fabric of it, for tests of networks.
 
-use wale::model::{FabricCard, LoopProportions, YarnCard};
+use wale::model::{KnitCard, LoopProportions, YarnCard};
 
 /// A yarn of a millimetre, in loops of 9.5 mm.
-pub fn cards() -> (YarnCard, FabricCard) {
+pub fn cards() -> (YarnCard, KnitCard) {
     let yarn = YarnCard {
         linear_density: 3e-4,
         radius: 5e-4,

@@ -2,7 +2,7 @@
 #![allow(dead_code)]
 
 use glam::DVec3;
-use wale::model::{Drive, Grip, Motion, Network, NodeId, PassId, PassKind, SegmentKind, Selection};
+use wale::model::{Drive, Grip, Motion, Network, NodeId, PassId, PassKind, SegmentKind, Selection, YarnRole};
 use wale::scene::Scene;
 use wale::simulation::Simulation;
 
@@ -26,11 +26,11 @@ pub fn rod(segments: usize) -> Network {
 fn scene() -> Scene {
     let text = "schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = 4\nrows = 4\n[simulation]\ngravity = 0\nself_contact = false\nnewton_tolerance = 1e-6\nnewton_iterations = 100";
     let mut scene = Scene::from_text(text, "rod").unwrap();
-    scene.yarn.bending_stiffness = EI;
-    scene.yarn.stretch_stiffness = 1e7 * EI / (LENGTH * LENGTH);
-    scene.yarn.linear_density = DENSITY * scene.fabric.path_ratio;
-    scene.yarn.mass_damping = 0.0;
-    scene.yarn.stiffness_damping = 0.0;
+    scene.yarns.first_mut().bending_stiffness = EI;
+    scene.yarns.first_mut().stretch_stiffness = 1e7 * EI / (LENGTH * LENGTH);
+    scene.yarns.first_mut().linear_density = DENSITY * scene.fabric.path_ratio(YarnRole::Knitted);
+    scene.yarns.first_mut().mass_damping = 0.0;
+    scene.yarns.first_mut().stiffness_damping = 0.0;
     scene
 }
 
@@ -88,6 +88,7 @@ pub fn network(places: Vec<DVec3>, yarns: &[Yarn]) -> Network {
         network.yarn_start.push(u32::try_from(network.pass_node.len()).unwrap());
         network.yarn_closure.push(None);
         network.yarn_kind.push(0);
+        network.yarn_role.push(YarnRole::Knitted);
         network.yarn_color.push([200, 180, 160]);
     }
     network.chart_place = (0..places.len()).map(|k| [k as f64, 0.0]).collect();
@@ -107,5 +108,5 @@ pub fn yarns(network: Network, change: impl FnOnce(&mut Scene)) -> Simulation {
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     scene.plan.placement.center = 0.5 * (low + high);
     change(&mut scene);
-    Simulation::new(network, &scene.yarn, &scene.fabric, scene.plan.clone())
+    Simulation::new(network, &scene.yarns, &scene.fabric, scene.plan.clone())
 }

@@ -24,7 +24,7 @@ pub(super) const HERE: &str = "fabric.chart";
 
 pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Result<Stitches, Failure> {
     let Some(text) = text else {
-        return Err(Complaint::new("fabric", "the fabric has no chart")
+        return Err(Complaint::new("fabric", "the fabric has no chart and no weave")
             .mend("add [fabric.chart] with pattern = \"garter\", columns = 20 and rows = 20")
             .into());
     };

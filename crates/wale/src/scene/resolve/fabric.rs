@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::{DQuat, DVec3};
 
 use super::{rotation, si, vector};
-use crate::model::{FabricCard, LoopProportions, Placement, YarnCard};
+use crate::model::{KnitCard, LoopProportions, Placement, YarnCard};
 use crate::scene::error::Complaint;
 use crate::scene::schema::{FabricText, PaperTable1, Stance, YarnText};
 use crate::scene::units::{Bounds, Dimension, Quantity};
@@ -14,7 +14,7 @@ use crate::scene::units::{Bounds, Dimension, Quantity};
 const LOOP_LENGTH: std::ops::RangeInclusive<f64> = 1e-4..=2.0;
 
 /// The card; `base` stands behind what the scene says.
-pub(super) fn resolve(said: &FabricText, base: &FabricText, yarn: &YarnCard) -> Result<FabricCard, Complaint> {
+pub(super) fn resolve(said: &FabricText, base: &FabricText, yarn: &YarnCard) -> Result<KnitCard, Complaint> {
     let mut proportions = LoopProportions::default();
     if let Some(ratio) = si(said.path_ratio.or(base.path_ratio)) {
         proportions.path_ratio = ratio;
@@ -77,7 +77,7 @@ fn size_key(said: &FabricText) -> &'static str {
 }
 
 /// The card with every number that the text states.
-fn overridden(mut card: FabricCard, text: &FabricText) -> FabricCard {
+fn overridden(mut card: KnitCard, text: &FabricText) -> KnitCard {
     fn set<D: Dimension, B: Bounds>(number: &mut f64, stated: Option<Quantity<D, B>>) {
         if let Some(value) = stated {
             *number = value.si();
@@ -102,7 +102,7 @@ fn overridden(mut card: FabricCard, text: &FabricText) -> FabricCard {
 }
 
 /// Numbers that cannot be together.
-fn check(card: &FabricCard, said: &FabricText) -> Result<(), Complaint> {
+fn check(card: &KnitCard, said: &FabricText) -> Result<(), Complaint> {
     if 4.0 * card.stitch_length > 0.9 * card.loop_length {
         let key = if said.stitch_length.is_some() { "fabric.stitch_length" } else { size_key(said) };
         let what = format!(

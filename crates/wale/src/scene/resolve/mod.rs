@@ -5,6 +5,7 @@ mod chart;
 mod fabric;
 mod happening;
 mod plan;
+mod weave;
 mod yarn;
 mod yarns;
 
@@ -17,7 +18,7 @@ use super::error::{Complaint, SceneError};
 use super::schema::{AxisAngle, Direction, FabricText, PresetName, SceneText, YarnText};
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
-use crate::model::Plan;
+use crate::model::{FabricCard, Plan};
 
 /// What is wrong, in this file or in one that it names.
 pub(super) enum Failure {
@@ -41,20 +42,30 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     }
     let said = text.yarn.clone().unwrap_or_default();
     let (yarn_base, fabric_base) = base(&said, &text.fabric)?;
-    let (yarn, yarn_color) = yarn::resolve(&said, &yarn_base)?;
-    let fabric = fabric::resolve(&text.fabric, &fabric_base, &yarn)?;
-    let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
+    let (fabric, structure, yarns, yarn_colors, inputs) = if let Some(weave) = &text.fabric.weave {
+        let mut drafted = weave::resolve(weave, directory)?;
+        let (yarns, colors) = yarns::cards(&drafted.yarns, &said, &yarn_base, &text.yarns)?;
+        drafted.complete_colors(&colors);
+        let card = weave::card(&text.fabric, &drafted, &yarns)?;
+        let inputs = drafted.inputs.clone();
+        (FabricCard::Woven(card), drafted.structure(), yarns, colors, inputs)
+    } else {
+        // A wrong yarn or loop is said before a wrong chart.
+        yarn::resolve("yarn", &said, &yarn_base)?;
+        let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
+        let (yarns, colors) = yarns::cards(&stitches.yarns, &said, &yarn_base, &text.yarns)?;
+        let card = fabric::resolve(&text.fabric, &fabric_base, yarns.first())?;
+        (FabricCard::Knit(card), stitches.structure, yarns, colors, stitches.inputs)
+    };
     let placement = fabric::placement(&text.fabric)?;
     let simulation = plan::simulation(&text.simulation.clone().unwrap_or_default())?;
     let output = plan::output(&text.output.clone().unwrap_or_default());
     let obstacles = happening::obstacles(&text.obstacle, simulation.duration)?;
-    let size = stitches.structure.size();
+    let size = structure.size();
     let grips = happening::grips(&text.grip, simulation.duration, placement.center, size)?;
     let plan = Plan { placement, simulation, obstacles, grips, output };
     let title = text.title.clone().unwrap_or_default();
-    let yarn_colors = yarns::colors(&stitches.yarns, yarn_color, &text.yarns)?;
-    let scene = Scene { title, yarn, yarn_colors, fabric, structure: stitches.structure, plan };
-    Ok((scene, stitches.inputs))
+    Ok((Scene { title, yarns, yarn_colors, fabric, structure, plan }, inputs))
 }
 
 /// What stands behind the numbers of the scene: the paper's table, or a preset.

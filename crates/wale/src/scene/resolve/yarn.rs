@@ -14,10 +14,10 @@ const BULK_DENSITY: std::ops::RangeInclusive<f64> = 5.0..=10_000.0;
 const DIAMETER: std::ops::RangeInclusive<f64> = 2e-6..=0.1;
 
 /// The card and the colour; `base` stands behind what the scene says.
-pub(super) fn resolve(said: &YarnText, base: &YarnText) -> Result<(YarnCard, [u8; 3]), Complaint> {
-    contradictions(said)?;
+pub(super) fn resolve(path: &str, said: &YarnText, base: &YarnText) -> Result<(YarnCard, [u8; 3]), Complaint> {
+    contradictions(path, said)?;
     let text = said_over_base(said, base);
-    let missing = |key: &str| Complaint::new("yarn", format!("the yarn has no {key}")).mend(format!("add {key} = …"));
+    let missing = |key: &str| Complaint::new(path, format!("the yarn has no {key}")).mend(format!("add {key} = …"));
     let linear_density = si(text.linear_density).ok_or_else(|| missing("linear_density"))?;
     let radius = match (si(text.diameter), si(text.packing), si(text.fibre_density)) {
         (Some(diameter), ..) => diameter / 2.0,
@@ -29,13 +29,13 @@ pub(super) fn resolve(said: &YarnText, base: &YarnText) -> Result<(YarnCard, [u8
     let area = PI * radius * radius;
     if !DIAMETER.contains(&(2.0 * radius)) {
         let what = format!("the yarn is {:.3e} m thick", 2.0 * radius);
-        return Err(Complaint::new("yarn.diameter", what).why("yarns are between 2 µm and 10 cm thick"));
+        return Err(Complaint::new(format!("{path}.diameter"), what).why("yarns are between 2 µm and 10 cm thick"));
     }
     let bulk = linear_density / area;
     if !BULK_DENSITY.contains(&bulk) {
         let what = format!("linear density and thickness make a yarn of {bulk:.3e} kg/m³");
-        let key = if said.linear_density.is_some() { "yarn.linear_density" } else { "yarn.diameter" };
-        return Err(Complaint::new(key, what)
+        let key = if said.linear_density.is_some() { "linear_density" } else { "diameter" };
+        return Err(Complaint::new(format!("{path}.{key}"), what)
             .why("yarns have 5 to 10000 kg/m³ (wool about 300, spun cotton about 800)")
             .mend("check the units of linear_density and diameter"));
     }
@@ -53,13 +53,14 @@ pub(super) fn resolve(said: &YarnText, base: &YarnText) -> Result<(YarnCard, [u8
         twist: si(text.twist).unwrap_or(0.0),
     };
     if !(1..=12).contains(&card.plies) {
-        return Err(Complaint::new("yarn.plies", format!("a yarn is drawn with 1 to 12 plies, not {}", card.plies)));
+        let what = format!("a yarn is drawn with 1 to 12 plies, not {}", card.plies);
+        return Err(Complaint::new(format!("{path}.plies"), what));
     }
     Ok((card, text.color.unwrap_or(Color([0x8a, 0x8a, 0x8a])).0))
 }
 
 /// Two keys for one number.
-fn contradictions(said: &YarnText) -> Result<(), Complaint> {
+fn contradictions(path: &str, said: &YarnText) -> Result<(), Complaint> {
     let pairs = [
         ("diameter", said.diameter.is_some(), "packing", said.packing.is_some()),
         ("stretch_stiffness", said.stretch_stiffness.is_some(), "elastic_modulus", said.elastic_modulus.is_some()),
@@ -67,7 +68,7 @@ fn contradictions(said: &YarnText) -> Result<(), Complaint> {
     ];
     for (first, has_first, second, has_second) in pairs {
         if has_first && has_second {
-            return Err(Complaint::new(format!("yarn.{second}"), format!("{first} and {second} are both given"))
+            return Err(Complaint::new(format!("{path}.{second}"), format!("{first} and {second} are both given"))
                 .why("each follows from the other")
                 .mend("keep one of them"));
         }
@@ -76,7 +77,7 @@ fn contradictions(said: &YarnText) -> Result<(), Complaint> {
 }
 
 /// What the scene says, before what stands behind it. Keys that stand in each other's place are one choice.
-fn said_over_base(said: &YarnText, base: &YarnText) -> YarnText {
+pub(super) fn said_over_base(said: &YarnText, base: &YarnText) -> YarnText {
     let sized = said.packing.is_some() || said.fibre_density.is_some();
     YarnText {
         preset: None,

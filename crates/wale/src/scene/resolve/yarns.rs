@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use super::Failure;
 use super::beside::{path_beside, read_bytes};
 use super::chart::{HERE, unknown_stitch};
+use super::{Failure, yarn};
+use crate::model::Yarns;
 use crate::pattern::image::{self, LARGEST_IMAGE, Pixels};
 use crate::pattern::instructions::MOST_YARNS;
 use crate::pattern::{Chart, Stitch};
 use crate::scene::error::{Complaint, ErrorClass, nearest, shortened};
-use crate::scene::schema::{ChartText, OtherYarnText};
+use crate::scene::schema::{ChartText, OtherYarnText, YarnText};
 
 /// What an image draws, the lowest row first.
 pub(super) enum Drawn {
@@ -142,26 +143,34 @@ pub(super) fn assign(
     Ok((chart, names))
 }
 
-/// The colours of the chart's yarns: their own, or that of the scene's yarn.
-pub(super) fn colors(
+/// The cards and colours of a fabric's yarns: what they have of their own, over what the scene's yarn says.
+pub(super) fn cards(
     names: &[String],
-    first: [u8; 3],
+    first: &YarnText,
+    base: &YarnText,
     others: &BTreeMap<String, OtherYarnText>,
-) -> Result<Vec<[u8; 3]>, Complaint> {
+) -> Result<(Yarns, Vec<[u8; 3]>), Complaint> {
     for other in others.keys() {
         if !names.contains(other) {
             let near = nearest(other, names.iter().map(String::as_str));
             let complaint =
-                Complaint::new(format!("yarns.{other}"), format!("the chart has no yarn \"{}\"", shortened(other)));
+                Complaint::new(format!("yarns.{other}"), format!("the fabric has no yarn \"{}\"", shortened(other)));
             return Err(match near {
                 Some(near) => complaint.mend(format!("did you mean \"{near}\"?")),
-                None => complaint.mend("name it in stripes, yarns, palette or the chart's file, or leave it out"),
+                None => complaint
+                    .mend("name it in stripes, yarns, palette, warp, weft or the chart's file, or leave it out"),
             });
         }
     }
-    if names.is_empty() {
-        return Ok(vec![first]);
-    }
-    let color = |name: &String| others.get(name).and_then(|other| other.color).map_or(first, |color| color.0);
-    Ok(names.iter().map(color).collect())
+    let own = yarn::resolve("yarn", first, base)?;
+    let behind = yarn::said_over_base(first, base);
+    let of = |name: &String| match others.get(name) {
+        Some(other) => yarn::resolve(&format!("yarns.{name}"), &other.yarn(), &behind),
+        None => Ok(own.clone()),
+    };
+    let found = names.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+    let mut found = if found.is_empty() { vec![own] } else { found };
+    let colors = found.iter().map(|(_, color)| *color).collect();
+    let first = found.remove(0).0;
+    Ok((Yarns::new(first, found.into_iter().map(|(card, _)| card)), colors))
 }

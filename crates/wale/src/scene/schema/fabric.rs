@@ -3,11 +3,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ChartText, Direction, LengthVector};
+use super::{ChartText, Direction, LengthVector, WeaveText};
 use crate::scene::dimensions::{Angle, Force, ForcePerLength, Length, Pressure, Rate, Ratio, Time};
 use crate::scene::units::{NotNegative, Positive, Quantity};
 
-/// A fabric. Only the chart is required: the preset of the yarn gives the loop length, and measured proportions of
+/// A fabric. Only the chart or the weave is required: the preset of the yarn gives the loop length, and measured proportions of
 /// relaxed loops give the rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -81,9 +81,12 @@ pub struct FabricText {
     /// In place of stance: how the fabric is turned from lying.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rotation: Option<AxisAngle>,
-    /// The stitches. Required.
+    /// The stitches. Required, unless the fabric is woven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chart: Option<ChartText>,
+    /// The draft of a woven fabric, in place of the chart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub weave: Option<WeaveText>,
 }
 
 /// How a fabric lies at first.

@@ -7,6 +7,7 @@ mod chart;
 mod fabric;
 mod happening;
 mod simulation;
+mod weave;
 mod yarn;
 
 use std::collections::BTreeMap;
@@ -21,6 +22,7 @@ pub use happening::{
     SelectText, SphereText, TurnText,
 };
 pub use simulation::{Gravity, OutputText, SimulationText};
+pub use weave::{SelvedgeText, WeaveText};
 pub use yarn::{Color, OtherYarnText, PresetName, YarnText};
 
 use super::dimensions::{Force, Length, Ratio, Speed};
@@ -51,10 +53,10 @@ pub struct SceneText {
     /// The yarn; a worsted wool if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub yarn: Option<YarnText>,
-    /// Other yarns by the names that the chart gives them; a name that is not here is that of the yarn above.
+    /// Other yarns by the names that the chart or the weave gives them; a name that is not here is that of the yarn above.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub yarns: BTreeMap<String, OtherYarnText>,
-    /// The fabric, with its chart. Required.
+    /// The fabric, with its chart or its weave. Required.
     pub fabric: FabricText,
     /// Time, forces from outside, and the solver.
     #[serde(skip_serializing_if = "Option::is_none")]

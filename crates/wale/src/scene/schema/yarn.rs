@@ -80,9 +80,84 @@ pub struct YarnText {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "OtherYarn")]
 pub struct OtherYarnText {
+    /// Mass per length of the whole yarn, or its count.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub linear_density: Option<Quantity<LinearDensity, Positive>>,
+    /// Diameter in the fabric. In its place: packing and fibre_density.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<Quantity<Length, Positive>>,
+    /// Share of the yarn's cross-section that is fibre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub packing: Option<Quantity<Ratio, Fraction>>,
+    /// Density of the fibre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fibre_density: Option<Quantity<Density, Positive>>,
+    /// Stretch stiffness EA. In its place: elastic_modulus.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stretch_stiffness: Option<Quantity<Force, Positive>>,
+    /// Modulus Y of the yarn taken as solid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elastic_modulus: Option<Quantity<Pressure, Positive>>,
+    /// Bending stiffness EI. In its place: bending_modulus.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bending_stiffness: Option<Quantity<BendingStiffness, Positive>>,
+    /// B of the first paper, in N.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bending_modulus: Option<Quantity<Force, Positive>>,
+    /// Coefficient of friction between yarns of its kind; with another, the mean of both is taken.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Quantity<Ratio, NotNegative>>,
     /// Its colour: "#8a3324".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<Color>,
+    /// Plies drawn in pictures, 1 to 12.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plies: Option<u32>,
+    /// Ply twist drawn in pictures.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub twist: Option<Quantity<Twist>>,
+}
+
+impl OtherYarnText {
+    /// The same as words for a yarn; the damping of a fabric is that of its first yarn.
+    pub(in crate::scene) fn yarn(&self) -> YarnText {
+        YarnText {
+            preset: None,
+            linear_density: self.linear_density,
+            diameter: self.diameter,
+            packing: self.packing,
+            fibre_density: self.fibre_density,
+            stretch_stiffness: self.stretch_stiffness,
+            elastic_modulus: self.elastic_modulus,
+            bending_stiffness: self.bending_stiffness,
+            bending_modulus: self.bending_modulus,
+            friction: self.friction,
+            mass_damping: None,
+            stiffness_damping: None,
+            color: self.color,
+            plies: self.plies,
+            twist: self.twist,
+        }
+    }
+}
+
+impl From<YarnText> for OtherYarnText {
+    fn from(text: YarnText) -> Self {
+        Self {
+            linear_density: text.linear_density,
+            diameter: text.diameter,
+            packing: text.packing,
+            fibre_density: text.fibre_density,
+            stretch_stiffness: text.stretch_stiffness,
+            elastic_modulus: text.elastic_modulus,
+            bending_stiffness: text.bending_stiffness,
+            bending_modulus: text.bending_modulus,
+            friction: text.friction,
+            color: text.color,
+            plies: text.plies,
+            twist: text.twist,
+        }
+    }
 }
 
 /// An sRGB colour, written `"#rrggbb"`.

@@ -1,0 +1,75 @@
+//! What a yarn is made of, in SI units.
+
+/// A yarn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct YarnCard {
+    /// Linear density \[kg/m\] (1 tex = 1e-6 kg/m).
+    pub linear_density: f64,
+    /// Radius \[m\].
+    pub radius: f64,
+    /// Stretch stiffness `k_s = EA` \[N\].
+    pub stretch_stiffness: f64,
+    /// Bending stiffness `k_b = EI` \[N·m²\].
+    pub bending_stiffness: f64,
+    /// Coefficient of sliding friction between yarns \[–\].
+    pub friction_coefficient: f64,
+    /// Mass damping `α` \[1/s\].
+    pub mass_damping: f64,
+    /// Stiffness damping `β` \[s\], acting on the rates of stretch, bend and wrap.
+    pub stiffness_damping: f64,
+    /// Ply count drawn in pictures.
+    pub plies: u32,
+    /// Twist drawn in pictures \[turns/m\].
+    pub twist: f64,
+}
+
+/// The cards of a fabric's yarns, by their numbers ([`super::Network::yarn_kind`]).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Yarns {
+    cards: Vec<YarnCard>,
+}
+
+impl Yarns {
+    /// Yarns by their numbers; numbers beyond them are of the first.
+    #[must_use]
+    pub fn new(first: YarnCard, others: impl IntoIterator<Item = YarnCard>) -> Self {
+        let mut cards = vec![first];
+        cards.extend(others);
+        Self { cards }
+    }
+
+    /// The card of a yarn by its number.
+    #[must_use]
+    pub fn of(&self, kind: u8) -> &YarnCard {
+        self.cards.get(usize::from(kind)).unwrap_or(&self.cards[0])
+    }
+
+    /// The first yarn, whose damping is that of the whole fabric.
+    #[must_use]
+    pub fn first(&self) -> &YarnCard {
+        &self.cards[0]
+    }
+
+    /// The first yarn, to change it.
+    pub fn first_mut(&mut self) -> &mut YarnCard {
+        &mut self.cards[0]
+    }
+
+    /// All cards, at least one.
+    #[must_use]
+    pub fn cards(&self) -> &[YarnCard] {
+        &self.cards
+    }
+}
+
+impl From<&YarnCard> for Yarns {
+    fn from(card: &YarnCard) -> Self {
+        Self { cards: vec![card.clone()] }
+    }
+}
+
+impl From<&Yarns> for Yarns {
+    fn from(yarns: &Yarns) -> Self {
+        yarns.clone()
+    }
+}
