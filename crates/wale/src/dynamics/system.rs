@@ -407,6 +407,12 @@ impl System {
         self.stiffness_damping
     }
 
+    /// Mass of all yarn \[kg\].
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        self.mass_at_node.iter().sum()
+    }
+
     /// Rest length of yarn at a node in the initial layout \[m\].
     #[must_use]
     pub fn yarn_at(&self, node: NodeId) -> f64 {

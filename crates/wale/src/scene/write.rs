@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DQuat, DVec3};
 
 use super::schema::{
-    Axes, AxisAngle, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText, KeyText,
-    MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
-    SelvedgeText, SimulationText, SphereText, WeaveText, Worked, YarnText,
+    Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText,
+    KeyText, MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText,
+    SelectText, SelvedgeText, SimulationText, SphereText, WeaveText, Worked, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
@@ -119,13 +119,17 @@ fn weave(woven: &Woven, card: &WovenCard) -> Written<WeaveText> {
     let names = |threads: &[Thread]| Some(threads.iter().map(|thread| name(thread.yarn).to_string()).collect());
     // Either all threads of a system have a colour of their own, or none.
     let colors = |threads: &[Thread]| threads.iter().map(|thread| thread.color.map(Color)).collect();
+    let bias = woven.bias.map(|cut| -> Written<BiasText> {
+        Ok(BiasText { angle: of(cut.angle)?, width: of(cut.size[0])?, length: of(cut.size[1])? })
+    });
     Ok(WeaveText {
         symbols: Some(repeat.lines()),
-        ends: Some(draft.ends() as u64),
-        picks: Some(draft.picks() as u64),
+        ends: woven.bias.is_none().then_some(draft.ends() as u64),
+        picks: woven.bias.is_none().then_some(draft.picks() as u64),
+        bias: bias.transpose()?,
         end_spacing: some(card.spacing[0])?,
         pick_spacing: some(card.spacing[1])?,
-        selvedge: Some(match woven.selvedge {
+        selvedge: woven.bias.is_none().then_some(match woven.selvedge {
             Selvedge::Woven => SelvedgeText::Woven,
             Selvedge::Cut => SelvedgeText::Cut,
         }),

@@ -1,7 +1,7 @@
 //! From a draft to the network of its yarns: a node at every crossing, with one sliding coordinate for the warp and one
 //! for the weft.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::draft::{Draft, Thread};
 use crate::model::{Crossing, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnRole};
@@ -16,6 +16,15 @@ pub enum Selvedge {
     Cut,
 }
 
+/// A piece cut out of a fabric, its sides at an angle to the threads.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct BiasCut {
+    /// From the warp to the length of the piece, turning to the right \[rad\].
+    pub angle: f64,
+    /// Width and length \[m\].
+    pub size: [f64; 2],
+}
+
 /// A woven fabric, before anything is known of its yarns.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Woven {
@@ -25,16 +34,31 @@ pub struct Woven {
     pub selvedge: Selvedge,
     /// Length of the free ends of the warp, and of the weft, beyond the last crossing \[m\].
     pub fringe: [f64; 2],
+    /// The piece that is cut out of its middle and turned upright, if one is.
+    pub bias: Option<BiasCut>,
 }
 
 /// Colours of warp and weft of which nothing is said.
 const COLORS: [[u8; 3]; 2] = [[196, 138, 96], [122, 148, 170]];
 
+impl BiasCut {
+    /// Ends and picks that a piece reaches over, at a spacing \[m\].
+    #[must_use]
+    pub fn reach(&self, spacing: [f64; 2]) -> [f64; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        let [width, length] = self.size;
+        [
+            (width * cosine.abs() + length * sine.abs()) / spacing[0],
+            (width * sine.abs() + length * cosine.abs()) / spacing[1],
+        ]
+    }
+}
+
 impl Woven {
     /// A draft with a woven selvedge and short free ends of half a spacing.
     #[must_use]
     pub fn new(draft: Draft, spacing: [f64; 2]) -> Self {
-        Self { draft, selvedge: Selvedge::Woven, fringe: [0.5 * spacing[1], 0.5 * spacing[0]] }
+        Self { draft, selvedge: Selvedge::Woven, fringe: [0.5 * spacing[1], 0.5 * spacing[0]], bias: None }
     }
 
     /// The sheet, straight and flat, with ends and picks at a distance from their neighbours \[m\].
@@ -51,11 +75,17 @@ impl Woven {
                 yarn_start: vec![0],
                 ..Network::default()
             },
-            passes: vec![[PassId::default(); 2]; ends * picks],
+            crossing: vec![None; ends * picks],
+            passes: Vec::new(),
         };
         for pick in 0..picks {
             for end in 0..ends {
+                if !weaver.keeps(end, pick) {
+                    continue;
+                }
                 let node = weaver.node(end as f64, pick as f64);
+                weaver.crossing[pick * ends + end] = Some(node);
+                weaver.passes.push([PassId::default(); 2]);
                 weaver.network.loops.push(LoopInfo {
                     row: count(pick),
                     column: count(end),
@@ -76,10 +106,14 @@ impl Woven {
     fn is_cut_after(&self, pick: usize) -> bool {
         let kind = |thread: &Thread| (thread.yarn, thread.color);
         let weft = &self.draft.weft;
-        self.selvedge == Selvedge::Cut || pick + 1 == weft.len() || kind(&weft[pick]) != kind(&weft[pick + 1])
+        self.weft_is_cut() || pick + 1 == weft.len() || kind(&weft[pick]) != kind(&weft[pick + 1])
     }
 
-    /// The thread that each yarn of the network begins with, in their order.
+    fn weft_is_cut(&self) -> bool {
+        self.selvedge == Selvedge::Cut || self.bias.is_some()
+    }
+
+    /// The thread that each yarn of the network begins with, in their order, if none were cut away.
     #[must_use]
     pub fn threads(&self) -> Vec<Thread> {
         let begins = |pick: &usize| *pick == 0 || self.is_cut_after(pick - 1);
@@ -92,21 +126,48 @@ struct Weaver<'a> {
     woven: &'a Woven,
     spacing: [f64; 2],
     network: Network,
-    /// The passes of warp and weft at every crossing.
+    /// The node of every crossing that is there.
+    crossing: Vec<Option<usize>>,
+    /// The passes of warp and weft there, by node.
     passes: Vec<[PassId; 2]>,
 }
 
 impl Weaver<'_> {
-    fn node(&mut self, end: f64, pick: f64) -> usize {
+    /// Where an end and a pick cross \[m\].
+    fn place(&self, end: f64, pick: f64) -> DVec3 {
         let place = DVec3::new(end * self.spacing[0], pick * self.spacing[1], 0.0);
+        match self.woven.bias {
+            None => place,
+            Some(cut) => {
+                let draft = &self.woven.draft;
+                let middle = DVec3::new(
+                    0.5 * (draft.ends() as f64 - 1.0) * self.spacing[0],
+                    0.5 * (draft.picks() as f64 - 1.0) * self.spacing[1],
+                    0.0,
+                );
+                DQuat::from_rotation_z(cut.angle) * (place - middle)
+            }
+        }
+    }
+
+    fn keeps(&self, end: usize, pick: usize) -> bool {
+        self.woven.bias.is_none_or(|cut| {
+            let place = self.place(end as f64, pick as f64);
+            2.0 * place.x.abs() <= cut.size[0] && 2.0 * place.y.abs() <= cut.size[1]
+        })
+    }
+
+    fn node(&mut self, end: f64, pick: f64) -> usize {
+        let place = self.place(end, pick);
         self.network.position.push(place);
         self.network.front.push(DVec3::Z);
         self.network.chart_place.push([end, pick]);
         self.network.position.len() - 1
     }
 
-    fn crossing(&self, end: usize, pick: usize) -> usize {
-        pick * self.woven.draft.ends() + end
+    /// The node of a crossing, if it is there.
+    fn at(&self, end: usize, pick: usize) -> Option<usize> {
+        self.crossing[pick * self.woven.draft.ends() + end]
     }
 
     /// A pass, and the kind of the segment that leads on from it.
@@ -130,61 +191,68 @@ impl Weaver<'_> {
         self.network.yarn_color.push(thread.color.unwrap_or(COLORS[usize::from(role == YarnRole::Weft)]));
     }
 
-    /// Between two crossings a yarn changes sides, or floats.
-    fn between(a: bool, b: bool) -> SegmentKind {
-        if a == b { SegmentKind::Float } else { SegmentKind::Interlacing }
+    /// Between two crossings a yarn changes sides, or floats; behind the last it is an edge.
+    fn onward(&self, here: (usize, usize), next: Option<(usize, usize)>) -> SegmentKind {
+        let up = |(end, pick)| self.woven.draft.warp_up(end, pick);
+        match next {
+            None => SegmentKind::Edge,
+            Some(next) if up(here) == up(next) => SegmentKind::Float,
+            Some(_) => SegmentKind::Interlacing,
+        }
     }
 
     fn warp(&mut self, end: usize) {
         let draft = &self.woven.draft;
-        let (picks, fringe, step) = (draft.picks(), self.woven.fringe[0], self.spacing[1]);
+        let (fringe, step) = (self.woven.fringe[0], self.spacing[1]);
+        let picks: Vec<usize> = (0..draft.picks()).filter(|&pick| self.at(end, pick).is_some()).collect();
+        let (Some(&first), Some(&last)) = (picks.first(), picks.last()) else { return };
         let tail = fringe / step;
-        let node = self.node(end as f64, -tail);
+        let node = self.node(end as f64, first as f64 - tail);
         self.pass(node, 0.0, false, SegmentKind::Edge);
-        for pick in 0..picks {
-            let up = |pick: usize| draft.warp_up(end, pick);
-            let onward = if pick + 1 < picks { Self::between(up(pick), up(pick + 1)) } else { SegmentKind::Edge };
-            let crossing = self.crossing(end, pick);
-            self.passes[crossing][0] = self.pass(crossing, fringe + pick as f64 * step, true, onward);
+        for (k, &pick) in picks.iter().enumerate() {
+            let onward = self.onward((end, pick), picks.get(k + 1).map(|&next| (end, next)));
+            let Some(node) = self.at(end, pick) else { continue };
+            self.passes[node][0] = self.pass(node, fringe + (pick - first) as f64 * step, true, onward);
         }
-        let last = (picks as f64 - 1.0) * step;
-        let node = self.node(end as f64, picks as f64 - 1.0 + tail);
-        self.pass(node, 2.0 * fringe + last, false, SegmentKind::Edge);
+        let node = self.node(end as f64, last as f64 + tail);
+        self.pass(node, 2.0 * fringe + (last - first) as f64 * step, false, SegmentKind::Edge);
         self.close(YarnRole::Warp, draft.warp[end]);
     }
 
     fn weft(&mut self) {
         let draft = &self.woven.draft;
-        let (ends, fringe) = (draft.ends(), self.woven.fringe[1]);
-        let tail = fringe / self.spacing[0];
+        let (fringe, step) = (self.woven.fringe[1], self.spacing[0]);
+        let tail = fringe / step;
         let (mut arc, mut begins) = (0.0, true);
         for pick in 0..draft.picks() {
             // To and fro; cut picks all run to the right.
-            let rightward = self.woven.selvedge == Selvedge::Cut || pick.is_multiple_of(2);
-            let beside = |right: bool| if right { ends as f64 - 1.0 + tail } else { -tail };
+            let rightward = self.woven.weft_is_cut() || pick.is_multiple_of(2);
+            let mut ends: Vec<usize> = (0..draft.ends()).filter(|&end| self.at(end, pick).is_some()).collect();
+            if !rightward {
+                ends.reverse();
+            }
+            let (Some(&first), Some(&last)) = (ends.first(), ends.last()) else { continue };
+            let outward = if rightward { 1.0 } else { -1.0 };
             if begins {
-                let node = self.node(beside(!rightward), pick as f64);
+                let node = self.node(first as f64 - outward * tail, pick as f64);
                 self.pass(node, 0.0, false, SegmentKind::Edge);
                 arc = fringe;
             }
-            for k in 0..ends {
-                let at = |k: usize| if rightward { k } else { ends - 1 - k };
-                let up = |k: usize| draft.warp_up(at(k), pick);
-                let onward = if k + 1 < ends { Self::between(up(k), up(k + 1)) } else { SegmentKind::Edge };
-                let crossing = self.crossing(at(k), pick);
-                self.passes[crossing][1] = self.pass(crossing, arc, true, onward);
-                arc += if k + 1 < ends { self.spacing[0] } else { 0.0 };
+            for (k, &end) in ends.iter().enumerate() {
+                let onward = self.onward((end, pick), ends.get(k + 1).map(|&next| (next, pick)));
+                let Some(node) = self.at(end, pick) else { continue };
+                self.passes[node][1] = self.pass(node, arc, true, onward);
+                arc += if k + 1 < ends.len() { step } else { 0.0 };
             }
             begins = self.woven.is_cut_after(pick);
             if begins {
-                let node = self.node(beside(rightward), pick as f64);
+                let node = self.node(last as f64 + outward * tail, pick as f64);
                 self.pass(node, arc + fringe, false, SegmentKind::Edge);
                 self.close(YarnRole::Weft, draft.weft[pick]);
             } else {
                 // A turn half a spacing outside, half way to the next pick.
-                let side = if rightward { ends as f64 - 0.5 } else { -0.5 };
-                let node = self.node(side, pick as f64 + 0.5);
-                let leg = 0.5 * self.spacing[0].hypot(self.spacing[1]);
+                let node = self.node(last as f64 + 0.5 * outward, pick as f64 + 0.5);
+                let leg = 0.5 * step.hypot(self.spacing[1]);
                 self.pass(node, arc + leg, false, SegmentKind::Edge);
                 arc += 2.0 * leg;
             }
@@ -192,12 +260,11 @@ impl Weaver<'_> {
     }
 
     fn stack(&mut self) {
-        let ends = self.woven.draft.ends();
         let mut stacks: Vec<Vec<PassId>> = Vec::with_capacity(self.network.node_count());
-        for (crossing, [warp, weft]) in self.passes.iter().enumerate() {
-            let up = self.woven.draft.warp_up(crossing % ends, crossing / ends);
+        for (node, [warp, weft]) in self.passes.iter().enumerate() {
+            let up = self.network.loops[node].knit;
             stacks.push(if up { vec![*warp, *weft] } else { vec![*weft, *warp] });
-            self.network.crossings.push(Crossing { node: NodeId::new(crossing), warp: *warp, weft: *weft });
+            self.network.crossings.push(Crossing { node: NodeId::new(node), warp: *warp, weft: *weft });
         }
         stacks.resize(self.network.node_count(), Vec::new());
         for (pass, node) in self.network.pass_node.iter().enumerate() {
@@ -231,7 +298,7 @@ mod tests {
     fn every_crossing_has_both_yarns_in_the_drafts_order() {
         let draft = Draft::twill(2, 1).unwrap().repeat(7, 5).unwrap();
         for selvedge in [Selvedge::Woven, Selvedge::Cut] {
-            let woven = Woven { draft: draft.clone(), selvedge, fringe: [2e-3, 3e-3] };
+            let woven = Woven { draft: draft.clone(), selvedge, fringe: [2e-3, 3e-3], bias: None };
             let network = woven.network([1e-3, 0.8e-3]);
             assert_eq!(network.crossings.len(), 35);
             let yarn_of = network.pass_yarn();
@@ -259,6 +326,25 @@ mod tests {
             let width = 6e-3 + 2.0 * 3e-3;
             let weft = network.length_of(YarnId::new(7));
             assert!(if cut { (weft - width).abs() < 1e-12 } else { weft > 5.0 * 6e-3 });
+        }
+    }
+
+    #[test]
+    fn a_piece_on_the_bias_has_threads_of_every_length() {
+        let cut = BiasCut { angle: std::f64::consts::FRAC_PI_4, size: [10e-3, 30e-3] };
+        let reach = cut.reach([1e-3; 2]).map(|n| n as usize + 1);
+        let mut woven = Woven::new(Draft::plain().repeat(reach[0], reach[1]).unwrap(), [1e-3; 2]);
+        woven.bias = Some(cut);
+        let network = woven.network([1e-3; 2]);
+        let inside = network.crossings.iter().map(|crossing| network.position[crossing.node.index()]);
+        assert!(inside.clone().all(|x| x.x.abs() <= 5e-3 && x.y.abs() <= 15e-3));
+        // A crossing a square millimetre.
+        assert!((280..=320).contains(&inside.count()), "{}", network.crossings.len());
+        let longest = (0..network.yarn_count()).map(|y| network.length_of(YarnId::new(y))).fold(0.0, f64::max);
+        assert!((longest - 10e-3 * 2f64.sqrt()).abs() < 2e-3, "{longest}");
+        let yarn_of = network.pass_yarn();
+        for crossing in &network.crossings {
+            assert!(yarn_of[crossing.warp.index()] != yarn_of[crossing.weft.index()]);
         }
     }
 

@@ -10,7 +10,7 @@ pub mod wif;
 #[cfg(test)]
 mod wif_tests;
 
-pub use cloth::{Selvedge, Woven};
+pub use cloth::{BiasCut, Selvedge, Woven};
 pub use draft::{Draft, DraftError, Thread};
 pub use named::named_weave;
 pub use peirce::{Jammed, Sett};

@@ -9,7 +9,8 @@ use crate::pattern::Structure;
 use crate::pattern::instructions::MOST_YARNS;
 use crate::pattern::weave::wif::LARGEST_WIF;
 use crate::pattern::weave::{
-    Draft, DraftError, Selvedge, Thread, WifErrorReason, Woven, named, named_weave, peirce, read_draft, read_wif,
+    BiasCut, Draft, DraftError, Selvedge, Thread, WifErrorReason, Woven, named, named_weave, peirce, read_draft,
+    read_wif,
 };
 use crate::scene::error::{Complaint, ErrorClass, SceneError, shortened};
 use crate::scene::schema::{Color, FabricText, SelvedgeText, WeaveText};
@@ -59,10 +60,12 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
         inputs.push(path);
         draft
     };
-    let draft = sized(draft, text)?;
     let spacing = spacing(&draft, text)?;
+    let bias = bias(text)?;
+    let draft = sized(draft, text, bias.map(|cut| cut.reach(spacing)))?;
     let (draft, yarns) = threads(draft, text)?;
     let mut woven = Woven::new(draft, spacing);
+    woven.bias = bias;
     if text.selvedge == Some(SelvedgeText::Cut) {
         woven.selvedge = Selvedge::Cut;
     }
@@ -91,7 +94,42 @@ fn wif(name: &str, directory: Option<&Path>) -> Result<(Draft, PathBuf), Failure
     Ok((read.draft, path))
 }
 
-fn sized(draft: Draft, text: &WeaveText) -> Result<Draft, Complaint> {
+/// The piece that is cut out, which says how many ends and picks there are.
+fn bias(text: &WeaveText) -> Result<Option<BiasCut>, Complaint> {
+    let Some(cut) = text.bias else { return Ok(None) };
+    for (key, given) in [("ends", text.ends.is_some()), ("picks", text.picks.is_some())] {
+        if given {
+            return Err(Complaint::new(format!("{HERE}.{key}"), format!("{key} beside bias"))
+                .why("a piece has as many threads as its size and the sett make")
+                .mend(format!("leave {key} out")));
+        }
+    }
+    if text.selvedge == Some(SelvedgeText::Woven) {
+        let complaint = Complaint::new(format!("{HERE}.selvedge"), "a piece that is cut out has no woven selvedge");
+        return Err(complaint.mend("leave selvedge out"));
+    }
+    Ok(Some(BiasCut { angle: cut.angle.si(), size: [cut.width.si(), cut.length.si()] }))
+}
+
+fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draft, Complaint> {
+    let refused = |error: DraftError| {
+        let key = match reach {
+            Some(_) => "bias",
+            None if text.ends >= text.picks => "ends",
+            None => "picks",
+        };
+        let complaint = Complaint::new(format!("{HERE}.{key}"), error.to_string()).mend("make the fabric smaller");
+        if matches!(error, DraftError::TooLarge { .. }) {
+            complaint.class(ErrorClass::ResourceLimit)
+        } else {
+            complaint
+        }
+    };
+    if let Some(reach) = reach {
+        let [ends, picks] = reach.map(|count| count as u64 + 1);
+        Draft::check_size(ends, picks).map_err(refused)?;
+        return draft.repeat(ends as usize, picks as usize).map_err(refused);
+    }
     for (key, count) in [("ends", text.ends), ("picks", text.picks)] {
         if count.is_none() && text.file.is_none() {
             return Err(Complaint::new(HERE, format!("a weave needs {key}")).mend(format!("add {key} = 40")));
@@ -102,15 +140,6 @@ fn sized(draft: Draft, text: &WeaveText) -> Result<Draft, Complaint> {
     }
     let ends = text.ends.unwrap_or(draft.ends() as u64);
     let picks = text.picks.unwrap_or(draft.picks() as u64);
-    let refused = |error: DraftError| {
-        let key = if text.ends >= text.picks { "ends" } else { "picks" };
-        let complaint = Complaint::new(format!("{HERE}.{key}"), error.to_string()).mend("make the fabric smaller");
-        if matches!(error, DraftError::TooLarge { .. }) {
-            complaint.class(ErrorClass::ResourceLimit)
-        } else {
-            complaint
-        }
-    };
     Draft::check_size(ends, picks).map_err(refused)?;
     // Checked above: both counts are below the limit of crossings.
     draft.repeat(ends as usize, picks as usize).map_err(refused)

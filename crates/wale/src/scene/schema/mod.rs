@@ -22,7 +22,7 @@ pub use happening::{
     SelectText, SphereText, TurnText,
 };
 pub use simulation::{Gravity, OutputText, SimulationText};
-pub use weave::{SelvedgeText, WeaveText};
+pub use weave::{BiasText, SelvedgeText, WeaveText};
 pub use yarn::{Color, OtherYarnText, PresetName, YarnText};
 
 use super::dimensions::{Force, Length, Ratio, Speed};

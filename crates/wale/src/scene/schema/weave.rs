@@ -39,6 +39,9 @@ pub struct WeaveText {
     /// Picks to a length.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pick_count: Option<Quantity<ThreadCount, Positive>>,
+    /// A piece cut out of the fabric at an angle to its threads, in place of ends and picks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bias: Option<BiasText>,
     /// "woven" (the weft turns and goes on) or "cut" (every pick is a length of its own); woven if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub selvedge: Option<SelvedgeText>,
@@ -78,6 +81,19 @@ pub struct WeaveText {
     /// Angle of shear from which threads lie side by side.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_jamming_angle: Option<Quantity<Angle, Positive>>,
+}
+
+/// A piece cut out at an angle to the threads.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "BiasCut")]
+pub struct BiasText {
+    /// From the warp to the length of the piece: 45 degrees is the bias.
+    pub angle: Quantity<Angle>,
+    /// Width of the piece.
+    pub width: Quantity<Length, Positive>,
+    /// Its length, along y as it lies.
+    pub length: Quantity<Length, Positive>,
 }
 
 /// How the weft goes at the sides.

@@ -33,6 +33,19 @@ fn a_weave_is_a_scene_and_reads_back() {
 }
 
 #[test]
+fn a_piece_on_the_bias_is_as_large_as_the_scene_says() {
+    let weave = format!(
+        "{YARN}[fabric.weave]\npattern = \"plain\"\nend_spacing = \"1 mm\"\npick_spacing = \"1 mm\"\n\
+         bias = {{ angle = \"45 deg\", width = \"10 mm\", length = \"30 mm\" }}\n"
+    );
+    let scene = read(&weave);
+    assert_eq!(scene.structure.size(), [29, 29]);
+    assert_eq!(resolved_again(&scene), scene);
+    let error = Scene::from_text(&format!("schema = 1\n{weave}ends = 30\n"), "scene.toml").unwrap_err();
+    assert!(error.to_string().contains("ends beside bias"), "{error}");
+}
+
+#[test]
 fn what_the_scene_states_of_a_weave_goes_before_its_geometry() {
     let scene = read(&format!(
         "{YARN}[fabric]\nresidual_compression = \"1 mN\"\n[fabric.weave]\nsymbols = [\".x\", \"x.\"]\nends = 4\npicks = 4\n\
