@@ -97,6 +97,7 @@ fn cards() -> (YarnCard, KnitCard) {
         friction_coefficient: 0.3,
         mass_damping: 1.0,
         stiffness_damping: 0.0,
+        loose_ends: false,
         plies: 2,
         twist: 250.0,
     };

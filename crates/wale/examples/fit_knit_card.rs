@@ -63,6 +63,7 @@ fn relaxed(chart: &Chart, proportions: &LoopProportions) -> Option<(TileEquilibr
         friction_coefficient: 0.0,
         mass_damping: 0.0,
         stiffness_damping: 0.0,
+        loose_ends: false,
         plies: 2,
         twist: 0.0,
     };

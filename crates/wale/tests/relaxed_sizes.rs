@@ -31,6 +31,7 @@ fn sizes_relative_to_stockinette() {
         friction_coefficient: 0.3,
         mass_damping: 0.0,
         stiffness_damping: 0.0,
+        loose_ends: false,
         plies: 2,
         twist: 0.0,
     };

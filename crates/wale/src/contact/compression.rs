@@ -121,7 +121,8 @@ impl Compression {
         let mut compression = Self { strands, contact_of: vec![None; network.pass_count()], ..Self::default() };
         let mut deeper = Vec::new();
         for node in 0..network.node_count() {
-            match *network.stack(NodeId::new(node)) {
+            let stack: Vec<PassId> = network.live_stack(NodeId::new(node)).collect();
+            match *stack {
                 [a, b] => {
                     let index = compression.contacts.len() as u32;
                     compression.contacts.push(Contact { yarns: [of(a), of(b)], side: side[node] });

@@ -146,6 +146,7 @@ mod tests {
             friction_coefficient: 0.3,
             mass_damping: 0.0,
             stiffness_damping: 0.0,
+            loose_ends: false,
             plies: 2,
             twist: 0.0,
         };

@@ -146,7 +146,7 @@ impl System {
         let spring = AnchoredSpring { stiffness: card.anchor_stiffness(), limit: 0.0, anchor: 0.0 };
         for p in 0..network.pass_count() {
             let pass = PassId::new(p);
-            if let (true, Some(contact)) = (network.pass_slides[p], compression.contact_of(pass)) {
+            if let (true, Some(contact)) = (network.slides(pass), compression.contact_of(pass)) {
                 friction.push(spring, [dof(coordinates.slot(pass))]);
                 rubbing.push((pass, contact, rubs(pass)));
             }

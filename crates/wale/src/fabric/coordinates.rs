@@ -50,10 +50,12 @@ impl Coordinates {
         let block_count = node_count + overflow.div_ceil(BLOCK);
         let mut free = vec![false; BLOCK * block_count];
         for node in 0..node_count {
-            free[BLOCK * node..BLOCK * node + 3].fill(true);
+            // A node that all yarns have left is nowhere in particular.
+            let there = network.pulled_out.is_empty() || network.live_stack(NodeId::new(node)).next().is_some();
+            free[BLOCK * node..BLOCK * node + 3].fill(there);
         }
         for (pass, slot) in sliding.iter().enumerate() {
-            free[*slot as usize] = network.pass_slides[pass];
+            free[*slot as usize] = network.slides(PassId::new(pass));
         }
         Self { node_count, block_count, sliding, free }
     }

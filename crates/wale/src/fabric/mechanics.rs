@@ -4,8 +4,8 @@ use super::coordinates::{CoordinateMap, Dof};
 use super::elements::{ElementSet, Elements};
 use crate::energy::{Bending, Shear, Spacing, StitchLength, Stretch, Wrapping};
 use crate::model::{
-    ContactPair, FabricCard, KnitCard, Network, NodeId, PassId, PassKind, SegmentKind, WovenCard, YarnCard, YarnId,
-    YarnRole, Yarns,
+    ContactPair, Crossing, FabricCard, KnitCard, Network, NodeId, PassId, PassKind, SegmentKind, StitchContact,
+    WovenCard, YarnCard, YarnId, YarnRole, Yarns,
 };
 
 /// Elastic elements of a fabric.
@@ -67,6 +67,9 @@ impl Mechanics {
         card: &FabricCard,
         map: &mut dyn CoordinateMap,
     ) {
+        if network.is_out(pass) {
+            return;
+        }
         let Some(next) = network.neighbour(yarn, pass, 1) else { return };
         let here = point(map, network, pass, [0; 2], 0);
         let there = point(map, network, next.pass, next.image, next.turns);
@@ -76,7 +79,8 @@ impl Mechanics {
         };
         self.stretch.push(Stretch { stiffness }, join(here, there));
         self.segment_after.push(pass);
-        if let Some(previous) = network.neighbour(yarn, pass, -1) {
+        let previous = network.neighbour(yarn, pass, -1);
+        if let Some(previous) = previous {
             let before = point(map, network, previous.pass, previous.image, previous.turns);
             let rest_angle = match (network.pass_kind[pass.index()], card) {
                 (PassKind::FootHead, FabricCard::Knit(card)) => card.bend_angle_foot_head,
@@ -88,6 +92,11 @@ impl Mechanics {
             stencil[4..8].copy_from_slice(&here);
             stencil[8..].copy_from_slice(&there);
             self.bending.push(Bending { stiffness: material.bending_stiffness, rest_angle }, stencil);
+        }
+        // A loose end may be pulled up to its last contact, and out of it.
+        let end = previous.is_none() || network.neighbour(yarn, next.pass, 1).is_none();
+        if end && material.can_be_pulled_out(network.yarn_role[yarn.index()]) {
+            return;
         }
         let between = [here[3], there[3]];
         let at = |p: PassId| network.arc_length[p.index()];
@@ -107,7 +116,7 @@ impl Mechanics {
                 }
             }
         };
-        if distance > 0.0 && (network.pass_slides[pass.index()] || network.pass_slides[next.pass.index()]) {
+        if distance > 0.0 && (network.slides(pass) || network.slides(next.pass)) {
             self.spacing.push(Spacing { stiffness: card.spacing_stiffness(), distance }, between);
         }
     }
@@ -136,7 +145,8 @@ impl Mechanics {
     }
 
     fn add_contacts(&mut self, network: &Network, card: &KnitCard, map: &mut dyn CoordinateMap) {
-        for contact in &network.stitches {
+        let whole = |contact: &&StitchContact| !contact.passes.iter().flatten().any(|&pass| network.is_out(pass));
+        for contact in network.stitches.iter().filter(whole) {
             let axis = contact.nodes.map(|node| map.position(node, [0; 2]));
             let [first, second] = contact.passes[0];
             let share = f64::from(network.segment_share[first.min(second).index()]);
@@ -170,7 +180,8 @@ impl Mechanics {
         let mean = 0.5 * (card.spacing[0] + card.spacing[1]);
         let element =
             Shear { stiffness: 0.5 * card.shear_stiffness * mean / 4.0, jamming_angle: card.shear_jamming_angle };
-        for crossing in &network.crossings {
+        let whole = |crossing: &&Crossing| !network.is_out(crossing.warp) && !network.is_out(crossing.weft);
+        for crossing in network.crossings.iter().filter(whole) {
             let sides = [crossing.warp, crossing.weft].map(|pass| {
                 let near = [-1, 1].map(|step| network.neighbour(yarn_of[pass.index()], pass, step));
                 near.map(|near| near.filter(|near| network.pass_kind[near.pass.index()] == PassKind::Crossing))

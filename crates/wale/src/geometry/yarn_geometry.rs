@@ -67,7 +67,7 @@ pub fn curves(network: &Network, frame: &Frame, settings: &CurveSettings) -> Vec
     let periods = settings.periods.unwrap_or(rest_periods);
     let passes = Passes::new(network);
     let normals = stack_normals(network, &passes, &frame.positions, periods, rest_periods);
-    let drawing = Drawing {
+    let mut drawing = Drawing {
         network,
         frame,
         settings,
@@ -76,6 +76,7 @@ pub fn curves(network: &Network, frame: &Frame, settings: &CurveSettings) -> Vec
         claspings: claspings(network, frame, settings, &passes, &normals),
         passes,
     };
+    drawing.leave_contacts();
     (0..network.yarn_count()).map(|y| drawing.curve(YarnId::new(y))).collect()
 }
 
@@ -214,6 +215,19 @@ struct Knot {
 }
 
 impl Drawing<'_> {
+    /// A pass that its yarn has been pulled out of lies where the end of the yarn is, and clasps nothing.
+    fn leave_contacts(&mut self) {
+        let out = self.network.pulled_out_at(&self.frame.sliding);
+        for yarn in (0..self.network.yarn_count()).map(YarnId::new) {
+            let passes = self.network.yarn_passes(yarn);
+            for p in passes.clone().filter(|&p| out[p]) {
+                let first = self.frame.sliding[p] == self.frame.sliding[passes.start];
+                self.points[p] = self.points[if first { passes.start } else { passes.end - 1 }];
+                self.claspings[p] = self.claspings[p].map(|_| DVec3::ZERO);
+            }
+        }
+    }
+
     fn curve(&self, yarn: YarnId) -> Curve {
         let range = self.network.yarn_passes(yarn);
         let closure = self.network.yarn_closure[yarn.index()];

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::model::{FabricCard, Network, NodeId, YarnId, Yarns};
+use crate::model::{FabricCard, Network, NodeId, PassId, YarnId, Yarns};
 
 /// What a network consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -54,7 +54,7 @@ impl Census {
             }
             nodes_by_stack_size[size] += 1;
         }
-        let sliding = network.pass_slides.iter().filter(|slides| **slides).count();
+        let sliding = (0..network.pass_count()).filter(|&pass| network.slides(PassId::new(pass))).count();
         let kinds = network.yarn_kind.iter().max().map_or(0, |most| usize::from(*most) + 1);
         let mut yarn_lengths_m = vec![0.0; kinds];
         for (y, kind) in network.yarn_kind.iter().enumerate() {
@@ -114,6 +114,7 @@ mod tests {
             friction_coefficient: 0.3,
             mass_damping: 0.0,
             stiffness_damping: 0.0,
+            loose_ends: false,
             plies: 2,
             twist: 200.0,
         };

@@ -137,6 +137,8 @@ pub struct Network {
     pub pass_kind: Vec<PassKind>,
     /// Whether the pass's sliding coordinate may change (false at yarn ends, turns and single-yarn nodes).
     pub pass_slides: Vec<bool>,
+    /// Passes that the end of their yarn has been pulled out of; empty while there are none.
+    pub pulled_out: Vec<bool>,
     /// Kind of the segment from each pass to the next of its yarn (`Edge`, unused, for a yarn's last pass).
     pub segment_kind: Vec<SegmentKind>,
     /// How many loops share the strand that the segment after each pass is part of: more than one where several are
@@ -233,7 +235,10 @@ impl Network {
     pub fn neighbour(&self, yarn: YarnId, pass: PassId, step: i32) -> Option<Neighbour> {
         let passes = self.yarn_passes(yarn);
         let (start, end) = (passes.start as i64, passes.end as i64);
-        let moved = i64::from(pass.0) + i64::from(step);
+        let mut moved = i64::from(pass.0) + i64::from(step);
+        while step != 0 && (start..end).contains(&moved) && self.is_out(PassId(moved as u32)) {
+            moved += i64::from(step.signum());
+        }
         let (index, turns) = if moved < start {
             (moved + (end - start), -1)
         } else if moved >= end {
@@ -250,6 +255,39 @@ impl Network {
         let (a, b) = (self.pass_image[pass.index()], self.pass_image[to.index()]);
         let image = std::array::from_fn(|k| b[k] - a[k] + closure[k] * turns);
         Some(Neighbour { pass: to, image, turns })
+    }
+    /// Whether the end of its yarn has been pulled out of a pass.
+    #[must_use]
+    pub fn is_out(&self, pass: PassId) -> bool {
+        self.pulled_out.get(pass.index()).copied().unwrap_or(false)
+    }
+    /// The passes stacked at a node that are still there, front to back.
+    pub fn live_stack(&self, node: NodeId) -> impl Iterator<Item = PassId> {
+        self.stack(node).iter().copied().filter(|pass| !self.is_out(*pass))
+    }
+    /// Whether a pass's sliding coordinate may change now: not of a pass that is out, nor of the last yarn of a node.
+    #[must_use]
+    pub fn slides(&self, pass: PassId) -> bool {
+        let index = pass.index();
+        self.pass_slides[index]
+            && (self.pulled_out.is_empty()
+                || !self.is_out(pass) && self.live_stack(self.pass_node[index]).nth(1).is_some())
+    }
+    /// Which passes are out where the passes have these rest arc lengths \[m\]: those that an end of their yarn has come
+    /// to, so that there is no yarn between.
+    #[must_use]
+    pub fn pulled_out_at(&self, sliding: &[f64]) -> Vec<bool> {
+        let mut out = vec![false; self.pass_count()];
+        for yarn in (0..self.yarn_count()).map(YarnId::new) {
+            let passes = self.yarn_passes(yarn);
+            if self.yarn_closure[yarn.index()].is_some() || passes.len() < 3 {
+                continue;
+            }
+            let (first, last) = (sliding[passes.start], sliding[passes.end - 1]);
+            passes.clone().skip(1).take_while(|&p| sliding[p] == first).for_each(|p| out[p] = true);
+            passes.rev().skip(1).take_while(|&p| sliding[p] == last).for_each(|p| out[p] = true);
+        }
+        out
     }
     /// Total rest length of all yarns \[m\].
     #[must_use]

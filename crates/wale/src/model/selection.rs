@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use super::{Network, NodeId};
+use super::{Network, NodeId, YarnId};
 
 /// A part of a fabric, independent of how many nodes it has.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,15 @@ pub enum Selection {
         rows: Option<Range<u32>>,
         /// Columns of the chart from 0 at the left; `None` for all.
         columns: Option<Range<u32>>,
+    },
+    /// The first or last nodes of the lengths of a yarn.
+    YarnEnd {
+        /// The yarn by its number.
+        yarn: u8,
+        /// Which length of it, counted from 0; all if `None`.
+        length: Option<u32>,
+        /// The last node rather than the first.
+        last: bool,
     },
     /// The nodes whose initial world position lies in a box.
     Region {
@@ -73,6 +82,15 @@ impl Selection {
                 .filter(|&i| positions[i].cmpge(*low).all() && positions[i].cmple(*high).all())
                 .map(NodeId::new)
                 .collect(),
+            Self::YarnEnd { yarn, length, last } => {
+                let of_kind = (0..network.yarn_count()).filter(|&y| network.yarn_kind[y] == *yarn);
+                let chosen = of_kind.enumerate().filter(|(k, _)| length.is_none_or(|length| length as usize == *k));
+                let passes =
+                    chosen.map(|(_, y)| network.yarn_passes(YarnId::new(y))).filter(|passes| !passes.is_empty());
+                let ends: BTreeSet<NodeId> =
+                    passes.map(|passes| network.pass_node[if *last { passes.end - 1 } else { passes.start }]).collect();
+                ends.into_iter().collect()
+            }
             Self::Edge { edge, depth } => {
                 loops_and_edges(network, |row, column| edge.reaches(*depth, row, column, row_count, column_count))
             }
@@ -138,6 +156,7 @@ mod tests {
         Network {
             pass_node: [0, 2, 1, 3, 4, 5].map(node).to_vec(),
             yarn_start: vec![0, 6],
+            yarn_kind: vec![0],
             position: (0..6).map(|i| DVec3::new(f64::from(i), 0.0, 0.0)).collect(),
             loops: vec![stitch(1, 0, 0), stitch(2, 0, 1), stitch(3, 1, 0), stitch(4, 1, 1)],
             chart_size: [2, 2],
@@ -167,5 +186,8 @@ mod tests {
         let region = Selection::Region { low: DVec3::new(0.5, -1.0, -1.0), high: DVec3::new(2.5, 1.0, 1.0) };
         assert_eq!(picked(&region), [1, 2]);
         assert_eq!(picked(&Selection::All).len(), 6);
+        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: None, last: false }), [0]);
+        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: Some(0), last: true }), [5]);
+        assert!(picked(&Selection::YarnEnd { yarn: 1, length: None, last: true }).is_empty());
     }
 }

@@ -1,5 +1,7 @@
 //! What a yarn is made of, in SI units.
 
+use super::YarnRole;
+
 /// A yarn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct YarnCard {
@@ -17,10 +19,21 @@ pub struct YarnCard {
     pub mass_damping: f64,
     /// Stiffness damping `β` \[s\], acting on the rates of stretch, bend and wrap.
     pub stiffness_damping: f64,
+    /// Whether the ends of a knitted yarn are loose, so that it can be pulled out of its fabric; tied to it if not. The
+    /// threads of a weave are always loose.
+    pub loose_ends: bool,
     /// Ply count drawn in pictures.
     pub plies: u32,
     /// Twist drawn in pictures \[turns/m\].
     pub twist: f64,
+}
+
+impl YarnCard {
+    /// Whether an end of this yarn can be pulled out of the contacts of a fabric that it is part of so.
+    #[must_use]
+    pub fn can_be_pulled_out(&self, role: YarnRole) -> bool {
+        role != YarnRole::Knitted || self.loose_ends
+    }
 }
 
 /// The cards of a fabric's yarns, by their numbers ([`super::Network::yarn_kind`]).

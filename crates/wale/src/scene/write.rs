@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use super::schema::{
     Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText,
     KeyText, MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText,
-    SelectText, SelvedgeText, SimulationText, SphereText, WeaveText, Worked, YarnText,
+    SelectText, SelvedgeText, SimulationText, SphereText, WeaveText, WhichEnd, Worked, YarnEndText, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
@@ -29,7 +29,7 @@ pub(super) fn text_of(scene: &Scene) -> Written<SceneText> {
         simulation: Some(simulation(scene)?),
         output: Some(output(scene)?),
         obstacle: scene.plan.obstacles.iter().map(obstacle).collect::<Written<_>>()?,
-        grip: scene.plan.grips.iter().map(grip).collect::<Written<_>>()?,
+        grip: scene.plan.grips.iter().map(|of| grip(scene, of)).collect::<Written<_>>()?,
     })
 }
 
@@ -66,6 +66,7 @@ fn yarn(scene: &Scene, number: usize) -> Written<YarnText> {
         friction: some(card.friction_coefficient)?,
         mass_damping: some(card.mass_damping)?,
         stiffness_damping: some(card.stiffness_damping)?,
+        loose_ends: Some(card.loose_ends),
         color: scene.yarn_colors.get(number).copied().map(Color),
         plies: Some(card.plies),
         twist: some(card.twist)?,
@@ -202,12 +203,15 @@ fn name(yarn: u8) -> char {
 
 /// The yarns after the first, by their letters.
 fn other_yarns(scene: &Scene) -> Written<BTreeMap<String, OtherYarnText>> {
-    // Letters name the yarns of a chart and of a draft, carriers those of a program.
-    let named = |at: usize| match &scene.structure {
+    (1..scene.yarn_colors.len()).map(|at| Ok((yarn_name(scene, at), yarn(scene, at)?.into()))).collect()
+}
+
+/// Letters name the yarns of a chart and of a draft, carriers those of a program.
+fn yarn_name(scene: &Scene, at: usize) -> String {
+    match &scene.structure {
         Structure::Chart { .. } | Structure::Woven(_) => name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(),
         Structure::Machine(program) => program.knitted.carriers.get(at).cloned().unwrap_or_default(),
-    };
-    (1..scene.yarn_colors.len()).map(|at| Ok((named(at), yarn(scene, at)?.into()))).collect()
+    }
 }
 
 fn simulation(scene: &Scene) -> Written<SimulationText> {
@@ -283,14 +287,14 @@ fn motion(motion: &Motion) -> Written<Option<MotionText>> {
     Ok(Some(MotionText { keys: Some(keys), pivot: Some(vector(motion.pivot)?), ..MotionText::default() }))
 }
 
-fn grip(grip: &Grip) -> Written<GripText> {
+fn grip(scene: &Scene, grip: &Grip) -> Written<GripText> {
     let (motion, pull) = match &grip.drive {
         Drive::Follow(follow) => (motion(follow)?, None),
         Drive::Force { force, ramp } => (None, Some(PullText { force: vector(*force)?, ramp: some(*ramp)? })),
     };
     Ok(GripText {
         name: Some(grip.name.clone()),
-        select: select(&grip.nodes)?,
+        select: select(scene, &grip.nodes)?,
         axes: Some(Axes(grip.axes)),
         motion,
         pull,
@@ -299,7 +303,7 @@ fn grip(grip: &Grip) -> Written<GripText> {
     })
 }
 
-fn select(selection: &Selection) -> Written<SelectText> {
+fn select(scene: &Scene, selection: &Selection) -> Written<SelectText> {
     use super::schema::Corner;
     let mut text = SelectText::default();
     match selection {
@@ -318,6 +322,13 @@ fn select(selection: &Selection) -> Written<SelectText> {
         Selection::Loops { rows, columns } => {
             let ends = |range: &std::ops::Range<u32>| [range.start.saturating_add(1), range.end];
             (text.rows, text.columns) = (rows.as_ref().map(ends), columns.as_ref().map(ends));
+        }
+        Selection::YarnEnd { yarn, length, last } => {
+            text.yarn_end = Some(YarnEndText {
+                yarn: yarn_name(scene, usize::from(*yarn)),
+                number: length.map(|length| length.saturating_add(1)),
+                end: if *last { WhichEnd::Last } else { WhichEnd::First },
+            });
         }
         Selection::Region { low, high } => {
             text.region = Some(RegionText { low: vector(*low)?, high: vector(*high)? });

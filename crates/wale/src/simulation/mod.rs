@@ -1,5 +1,6 @@
 //! The time loop: a fabric, what happens to it, and the steps from one frame to the next.
 
+mod pull_out;
 mod relax;
 mod start;
 
@@ -88,11 +89,7 @@ impl Simulation {
     #[must_use]
     pub fn new(network: Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>, plan: Plan) -> Self {
         let network = placed(network, &plan);
-        let mut system = System::new(&network, yarns, card);
-        system.set_gravity(plan.simulation.gravity);
-        let linear =
-            LinearSettings { solver: plan.simulation.linear_solver, tolerance: plan.simulation.linear_tolerance };
-        let newton = Newton::new(&system, linear);
+        let (system, newton) = equations(&network, yarns, card, &plan);
         let grips = Grips::new(&plan.grips, &network, &network.position);
         let coordinates = system.coordinates.initial(&network);
         let state = State {
@@ -151,6 +148,7 @@ impl Simulation {
             && state.obstacle_anchors.len().is_multiple_of(5);
         if fits {
             self.state = state;
+            self.forget_contacts();
         }
         fits
     }
@@ -267,6 +265,9 @@ impl Simulation {
         self.state.time = end;
         self.state.step += 1;
         self.state.next_step_size = next_step_size;
+        if self.let_ends_slip() {
+            self.forget_contacts();
+        }
     }
 
     /// A report of the state as it stands, as of a step of no length.
@@ -330,6 +331,15 @@ impl Simulation {
     pub fn chunk_count(&self) -> usize {
         Chunks::new(self.system.coordinates.block_count()).count()
     }
+}
+
+/// The terms of a fabric under gravity, and their solver.
+fn equations(network: &Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>, plan: &Plan) -> (System, Newton) {
+    let mut system = System::new(network, yarns, card);
+    system.set_gravity(plan.simulation.gravity);
+    let linear = LinearSettings { solver: plan.simulation.linear_solver, tolerance: plan.simulation.linear_tolerance };
+    let newton = Newton::new(&system, linear);
+    (system, newton)
 }
 
 /// The network with its middle and orientation where the plan places it.

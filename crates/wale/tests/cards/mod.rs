@@ -12,6 +12,7 @@ pub fn cards() -> (YarnCard, KnitCard) {
         friction_coefficient: 0.3,
         mass_damping: 0.0,
         stiffness_damping: 0.05,
+        loose_ends: false,
         plies: 2,
         twist: 0.0,
     };

@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3};
 use super::{exactly_one, rotation, si, unit, vector};
 use crate::model::motion::Key;
 use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
-use crate::scene::error::Complaint;
-use crate::scene::schema::{Corner, GripText, MotionText, ObstacleText, SelectText};
+use crate::scene::error::{Complaint, shortened};
+use crate::scene::schema::{Corner, GripText, MotionText, ObstacleText, SelectText, WhichEnd, YarnEndText};
 
 pub(super) fn obstacles(texts: &[ObstacleText], duration: f64) -> Result<Vec<Obstacle>, Complaint> {
     let names = names(texts.iter().map(|text| text.name.as_deref()), "obstacle")?;
@@ -64,6 +64,7 @@ pub(super) fn grips(
     duration: f64,
     middle: DVec3,
     size: [usize; 2],
+    yarns: &[String],
 ) -> Result<Vec<Grip>, Complaint> {
     let names = names(texts.iter().map(|text| text.name.as_deref()), "grip")?;
     let mut grips = Vec::with_capacity(texts.len());
@@ -84,7 +85,7 @@ pub(super) fn grips(
             return Err(Complaint::new(format!("{path}.axes"), "a grip that turns holds all three axes")
                 .mend("leave axes out, or the turn"));
         }
-        let nodes = selection(&text.select, &format!("{path}.select"), size)?;
+        let nodes = selection(&text.select, &format!("{path}.select"), size, yarns)?;
         grips.push(Grip { name, nodes, axes, drive, from, until });
     }
     Ok(grips)
@@ -166,13 +167,35 @@ fn motion(text: &MotionText, path: &str, middle: DVec3, from: f64, until: f64) -
     Ok(Motion { keys: vec![rest, Key { time: end, rotation, translation }], pivot })
 }
 
-fn selection(text: &SelectText, path: &str, [rows, columns]: [usize; 2]) -> Result<Selection, Complaint> {
+fn yarn_end(text: &YarnEndText, path: &str, yarns: &[String]) -> Result<Selection, Complaint> {
+    let one = ["A".to_owned()];
+    let yarns = if yarns.is_empty() { &one } else { yarns };
+    let Some(yarn) = yarns.iter().position(|name| *name == text.yarn) else {
+        let path = format!("{path}.yarn_end.yarn");
+        return Err(Complaint::new(path, format!("the fabric has no yarn \"{}\"", shortened(&text.yarn)))
+            .mend(format!("its yarns are: {}", yarns.join(", "))));
+    };
+    if text.number == Some(0) {
+        let complaint = Complaint::new(format!("{path}.yarn_end.number"), "lengths of yarn are counted from 1");
+        return Err(complaint.mend("leave number out for all of them"));
+    }
+    let length = text.number.map(|number| number - 1);
+    Ok(Selection::YarnEnd { yarn: yarn as u8, length, last: text.end == WhichEnd::Last })
+}
+
+fn selection(
+    text: &SelectText,
+    path: &str,
+    [rows, columns]: [usize; 2],
+    yarns: &[String],
+) -> Result<Selection, Complaint> {
     let loops = text.rows.is_some() || text.columns.is_some();
     let given = [
         ("edge", text.edge.is_some()),
         ("corner", text.corner.is_some()),
         (if text.rows.is_some() { "rows" } else { "columns" }, loops),
         ("region", text.region.is_some()),
+        ("yarn_end", text.yarn_end.is_some()),
         ("all", text.all == Some(true)),
     ];
     exactly_one(path, &given)?;
@@ -197,6 +220,9 @@ fn selection(text: &SelectText, path: &str, [rows, columns]: [usize; 2]) -> Resu
             Corner::BottomRight => (Edge::Bottom, Edge::Right),
         };
         return Ok(Selection::Corner { horizontal, vertical, depth });
+    }
+    if let Some(end) = &text.yarn_end {
+        return yarn_end(end, path, yarns);
     }
     if let Some(region) = &text.region {
         let (low, high) = (vector(&region.low), vector(&region.high));

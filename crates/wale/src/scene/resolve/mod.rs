@@ -42,27 +42,27 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     }
     let said = text.yarn.clone().unwrap_or_default();
     let (yarn_base, fabric_base) = base(&said, &text.fabric)?;
-    let (fabric, structure, yarns, yarn_colors, inputs) = if let Some(weave) = &text.fabric.weave {
+    let (fabric, structure, (yarns, yarn_colors), names, inputs) = if let Some(weave) = &text.fabric.weave {
         let mut drafted = weave::resolve(weave, directory)?;
         let (yarns, colors) = yarns::cards(&drafted.yarns, &said, &yarn_base, &text.yarns)?;
         drafted.complete_colors(&colors);
         let card = weave::card(&text.fabric, &drafted, &yarns)?;
-        let inputs = drafted.inputs.clone();
-        (FabricCard::Woven(card), drafted.structure(), yarns, colors, inputs)
+        let (names, inputs) = (drafted.yarns.clone(), drafted.inputs.clone());
+        (FabricCard::Woven(card), drafted.structure(), (yarns, colors), names, inputs)
     } else {
         // A wrong yarn or loop is said before a wrong chart.
         yarn::resolve("yarn", &said, &yarn_base)?;
         let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
         let (yarns, colors) = yarns::cards(&stitches.yarns, &said, &yarn_base, &text.yarns)?;
         let card = fabric::resolve(&text.fabric, &fabric_base, yarns.first())?;
-        (FabricCard::Knit(card), stitches.structure, yarns, colors, stitches.inputs)
+        (FabricCard::Knit(card), stitches.structure, (yarns, colors), stitches.yarns, stitches.inputs)
     };
     let placement = fabric::placement(&text.fabric)?;
     let simulation = plan::simulation(&text.simulation.clone().unwrap_or_default())?;
     let output = plan::output(&text.output.clone().unwrap_or_default());
     let obstacles = happening::obstacles(&text.obstacle, simulation.duration)?;
     let size = structure.size();
-    let grips = happening::grips(&text.grip, simulation.duration, placement.center, size)?;
+    let grips = happening::grips(&text.grip, simulation.duration, placement.center, size, &names)?;
     let plan = Plan { placement, simulation, obstacles, grips, output };
     let title = text.title.clone().unwrap_or_default();
     Ok((Scene { title, yarns, yarn_colors, fabric, structure, plan }, inputs))

@@ -49,6 +49,7 @@ pub(super) fn resolve(path: &str, said: &YarnText, base: &YarnText) -> Result<(Y
         friction_coefficient: si(text.friction).ok_or_else(|| missing("friction"))?,
         mass_damping: si(text.mass_damping).unwrap_or(0.0),
         stiffness_damping: si(text.stiffness_damping).unwrap_or(0.0),
+        loose_ends: text.loose_ends.unwrap_or(false),
         plies: text.plies.unwrap_or(2),
         twist: si(text.twist).unwrap_or(0.0),
     };
@@ -92,6 +93,7 @@ pub(super) fn said_over_base(said: &YarnText, base: &YarnText) -> YarnText {
         friction: said.friction.or(base.friction),
         mass_damping: said.mass_damping.or(base.mass_damping),
         stiffness_damping: said.stiffness_damping.or(base.stiffness_damping),
+        loose_ends: said.loose_ends.or(base.loose_ends),
         color: said.color.or(base.color),
         plies: said.plies.or(base.plies),
         twist: said.twist.or(base.twist),

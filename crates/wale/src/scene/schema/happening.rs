@@ -201,9 +201,36 @@ pub struct SelectText {
     /// What lies in a part of space at first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub region: Option<RegionText>,
+    /// The ends of a yarn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yarn_end: Option<YarnEndText>,
     /// True for everything.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub all: Option<bool>,
+}
+
+/// The first node of a yarn, or its last.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "YarnEnd")]
+pub struct YarnEndText {
+    /// The name of the yarn in the chart or the weave; "A" where no yarn has a name.
+    pub yarn: String,
+    /// Which of the lengths of that yarn, counted from 1 in the order in which they are worked; all if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub number: Option<u32>,
+    /// "first", where it was begun, or "last".
+    pub end: WhichEnd,
+}
+
+/// An end of a yarn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WhichEnd {
+    /// Where it was begun.
+    First,
+    /// Where it was cut off.
+    Last,
 }
 
 /// Where two edges meet.

@@ -64,6 +64,9 @@ pub struct YarnText {
     /// Damping of stretching, bending and wrapping; rigid motion is free of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_damping: Option<Quantity<Time, NotNegative>>,
+    /// Whether the ends of a knitted yarn are loose, so that it can be pulled out; tied to the fabric if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loose_ends: Option<bool>,
     /// Colour as "#rrggbb".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<Color>,
@@ -107,6 +110,9 @@ pub struct OtherYarnText {
     /// Coefficient of friction between yarns of its kind; with another, the mean of both is taken.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Quantity<Ratio, NotNegative>>,
+    /// Whether the ends of a knitted yarn are loose, so that it can be pulled out; tied to the fabric if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loose_ends: Option<bool>,
     /// Its colour: "#8a3324".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<Color>,
@@ -134,6 +140,7 @@ impl OtherYarnText {
             friction: self.friction,
             mass_damping: None,
             stiffness_damping: None,
+            loose_ends: self.loose_ends,
             color: self.color,
             plies: self.plies,
             twist: self.twist,
@@ -153,6 +160,7 @@ impl From<YarnText> for OtherYarnText {
             bending_stiffness: text.bending_stiffness,
             bending_modulus: text.bending_modulus,
             friction: text.friction,
+            loose_ends: text.loose_ends,
             color: text.color,
             plies: text.plies,
             twist: text.twist,

@@ -33,6 +33,24 @@ fn a_weave_is_a_scene_and_reads_back() {
 }
 
 #[test]
+fn grips_hold_the_ends_of_yarns() {
+    let weave = format!(
+        "{YARN}[fabric.weave]\npattern = \"plain\"\nend_spacing = \"1 mm\"\npick_spacing = \"1 mm\"\nends = 4\npicks = 5\n\
+         selvedge = \"cut\"\n[[grip]]\nselect = {{ yarn_end = {{ yarn = \"weft\", number = 2, end = \"last\" }} }}\n"
+    );
+    let scene = read(&weave);
+    assert_eq!(scene.plan.grips[0].nodes, Selection::YarnEnd { yarn: 1, length: Some(1), last: true });
+    assert_eq!(resolved_again(&scene), scene);
+    let network = scene.structure.network(&scene.fabric);
+    let held = scene.plan.grips[0].nodes.nodes(&network, &network.position);
+    assert_eq!(held.len(), 1);
+    assert!(network.position[held[0].index()].abs_diff_eq(DVec3::new(3.5e-3, 1e-3, 0.0), 1e-12));
+    let wrong = weave.replace("yarn = \"weft\"", "yarn = \"wool\"");
+    let error = Scene::from_text(&format!("schema = 1\n{wrong}"), "scene.toml").unwrap_err();
+    assert!(error.to_string().contains("no yarn \"wool\""), "{error}");
+}
+
+#[test]
 fn a_piece_on_the_bias_is_as_large_as_the_scene_says() {
     let weave = format!(
         "{YARN}[fabric.weave]\npattern = \"plain\"\nend_spacing = \"1 mm\"\npick_spacing = \"1 mm\"\n\
