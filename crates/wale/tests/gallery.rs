@@ -1,59 +1,9 @@
 //! Every scene of the gallery, run to its end: the numbers that its picture stands for.
 
-use std::path::Path;
-use std::sync::Mutex;
+mod play;
 
-use wale::measure::Shape;
-use wale::scene::Scene;
-use wale::simulation::{Simulation, Start, StepReport};
-
-/// One scene at a time: each uses all processors.
-static ALONE: Mutex<()> = Mutex::new(());
-
-/// A scene from its first to its last step.
-struct Played {
-    start: Start,
-    first: Shape,
-    last: Shape,
-    steps: Vec<StepReport>,
-    simulation: Simulation,
-    /// Speed of the nodes at the end, root mean square \[m/s\].
-    speed: f64,
-}
-
-fn play(name: &str) -> Played {
-    let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
-    let scene = Scene::read(&path).unwrap();
-    let compensate = scene.plan.simulation.rest_shape_compensation;
-    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, compensate);
-    let mut simulation = Simulation::new(start.network.clone(), &scene.yarns, &scene.fabric, scene.plan.clone());
-    let first = Shape::of(simulation.network(), &simulation.frame());
-    let mut steps = Vec::new();
-    while !simulation.finished() {
-        steps.push(simulation.step().unwrap());
-    }
-    let nodes = simulation.network().node_count();
-    let velocities = &simulation.state().velocities[..5 * nodes];
-    let squares: f64 = velocities.chunks_exact(5).map(|v| v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sum();
-    Played {
-        first,
-        last: Shape::of(simulation.network(), &simulation.frame()),
-        start,
-        steps,
-        speed: (squares / nodes as f64).sqrt(),
-        simulation,
-    }
-}
-
-impl Played {
-    /// Force of a grip along x at the step that ends nearest to a time.
-    fn force_at(&self, grip: usize, time: f64) -> f64 {
-        let near = |step: &&StepReport| (step.time - time).abs();
-        let step = self.steps.iter().min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();
-        step.grips[grip].force.x
-    }
-}
+use play::{Played, play};
+use wale::simulation::Simulation;
 
 #[test]
 fn stockinette_curls_and_garter_lies_flat() {

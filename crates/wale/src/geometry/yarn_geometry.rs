@@ -67,16 +67,17 @@ pub fn curves(network: &Network, frame: &Frame, settings: &CurveSettings) -> Vec
     let periods = settings.periods.unwrap_or(rest_periods);
     let passes = Passes::new(network);
     let normals = stack_normals(network, &passes, &frame.positions, periods, rest_periods);
+    let out = network.pulled_out_at(&frame.sliding);
     let mut drawing = Drawing {
         network,
         frame,
         settings,
         periods,
-        points: offset_points(network, frame, settings, &passes, &normals, periods),
+        points: offset_points(network, frame, settings, &passes, &normals, periods, &out),
         claspings: claspings(network, frame, settings, &passes, &normals),
         passes,
     };
-    drawing.leave_contacts();
+    drawing.leave_contacts(&out);
     (0..network.yarn_count()).map(|y| drawing.curve(YarnId::new(y))).collect()
 }
 
@@ -88,13 +89,15 @@ fn offset_points(
     passes: &Passes,
     normals: &[DVec3],
     periods: [DVec3; 2],
+    out: &[bool],
 ) -> Vec<DVec3> {
     let mut points: Vec<DVec3> =
         (0..network.pass_count()).map(|p| passes.place(&frame.positions, periods, p)).collect();
     let yarn_of = network.pass_yarn();
     for (node, normal) in normals.iter().enumerate() {
-        let stack = network.stack(crate::model::NodeId::new(node));
-        for (pass, height) in stack.iter().zip(heights(network, stack, &yarn_of, settings)) {
+        let stack = network.stack(crate::model::NodeId::new(node)).iter().copied();
+        let live: Vec<PassId> = stack.filter(|pass| !out[pass.index()]).collect();
+        for (pass, height) in live.iter().zip(heights(network, &live, &yarn_of, settings)) {
             points[pass.index()] += *normal * height;
         }
     }
@@ -216,8 +219,7 @@ struct Knot {
 
 impl Drawing<'_> {
     /// A pass that its yarn has been pulled out of lies where the end of the yarn is, and clasps nothing.
-    fn leave_contacts(&mut self) {
-        let out = self.network.pulled_out_at(&self.frame.sliding);
+    fn leave_contacts(&mut self, out: &[bool]) {
         for yarn in (0..self.network.yarn_count()).map(YarnId::new) {
             let passes = self.network.yarn_passes(yarn);
             for p in passes.clone().filter(|&p| out[p]) {

@@ -54,11 +54,10 @@ impl WovenCard {
 
     /// The card of a fabric of warp and weft with a geometry.
     ///
-    /// Shear at small angles is the bending of yarns that the crossings clasp: four half spans of stiffness `3 k_b/(p/2)`
-    /// a crossing and system, turned by half the angle each, `½ k_x p φ² = ½ Σ 3 k_b/p φ²`. Yarns lie side by side at the
-    /// angle whose cosine is their diameter over their distance. Contacts are pressed by the bending of the yarns over each
-    /// other: a span `p` pushed aside by `h` at its middle pushes back with `48 k_b h/(2p)³`, and a tenth of it is left in a
-    /// finished fabric.
+    /// Shear at small angles bends the yarns between crossings that clasp them: a span `p` of which both ends turn by half the
+    /// angle stores `1.5 k_b φ²/p`, and a crossing has one span of each system, `½ k_x L φ² = Σ 1.5 k_b φ²/p`. Yarns lie side
+    /// by side at the angle whose cosine is their diameter over their distance. Crossings are pressed by the bending of the
+    /// yarns over each other: a span of `2p` pushed aside by `h` at its middle pushes back with `48 k_b h/(2p)³`.
     #[must_use]
     pub fn new(warp: &YarnCard, weft: &YarnCard, geometry: &WovenGeometry) -> Self {
         let yarns = [warp, weft];
@@ -83,7 +82,7 @@ impl WovenCard {
             shear_jamming_angle: jamming.fold(largest, f64::min).max(least),
             spacing_stiffness: Self::SPACING_TO_STRETCH * stretch,
             anchor_stiffness: Self::ANCHOR_TO_STRETCH * stretch / pitch,
-            residual_compression: 0.1 * 0.5 * press,
+            residual_compression: 0.5 * press,
         }
     }
 }
