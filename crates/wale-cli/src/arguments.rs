@@ -119,7 +119,7 @@ pub struct Check {
     /// Stitches that a float may pass before it is mentioned
     #[arg(long, value_name = "STITCHES", default_value_t = 5)]
     pub longest_float: u32,
-    /// Scene file
+    /// Scene file, or with --topology a run folder
     pub scene: PathBuf,
     /// Print JSON
     #[arg(long)]
@@ -127,6 +127,9 @@ pub struct Check {
     /// Print the scene with every default written out
     #[arg(long)]
     pub resolved: bool,
+    /// Check where the yarns go: of a scene in its layout, of a run folder from its first frame to its last
+    #[arg(long)]
+    pub topology: bool,
     #[allow(missing_docs)]
     #[command(flatten)]
     pub limits: Limits,

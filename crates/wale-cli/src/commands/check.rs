@@ -6,6 +6,7 @@ use wale::record::{Checkpoints, Frames};
 
 use crate::arguments::Check;
 use crate::commands::inspect::yarns_and_flaws;
+use crate::commands::topology::topology;
 use crate::exit::Failure;
 use crate::opened::OpenedScene;
 use crate::output::{bytes, grouped, span};
@@ -13,6 +14,9 @@ use crate::{machine, output, say};
 
 /// Checks it.
 pub fn check(arguments: &Check) -> Result<(), Failure> {
+    if arguments.topology {
+        return topology(arguments);
+    }
     let opened = OpenedScene::read(&arguments.scene)?;
     if arguments.resolved {
         return output::line(format_args!("{}", opened.resolved()?.trim_end()));

@@ -1,7 +1,7 @@
 //! `wale inspect`: what a scene's fabric, or a run's, consists of and measures.
 
 use serde_json::{Value, json};
-use wale::measure::{Census, Shape};
+use wale::measure::{Census, Shape, shadow_area};
 use wale::model::{Frame, Network};
 use wale::record::{RunReader, Status};
 
@@ -31,12 +31,14 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     let census = Census::of(&network, &scene.yarns, &scene.fabric);
     let shape = Shape::of(&network, &frame);
     let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
+    let shadow = shadow_area(&network, &frame, scene.fabric.cell());
     if arguments.json {
         let mut facts = json!({
             "path": path,
             "fabric": census,
             "shape": shape,
             "areal_mass_kg_per_m2": areal_mass,
+            "shadow_area_m2": shadow,
         });
         if let Some(run) = run {
             facts["run"] = run;
@@ -75,6 +77,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     yarns_and_flaws(&census, arguments.longest_float)?;
     let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
     say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
+    say!("  shadow   {:.2} cm² from straight above", 1e4 * shadow)?;
     let [cell, cells] = match scene.fabric.woven() {
         Some(_) => ["crossing", "crossings"],
         None => ["stitch  ", "loops"],

@@ -13,5 +13,6 @@ pub mod render;
 pub mod resume;
 pub mod run;
 pub mod schema;
+pub mod topology;
 pub mod version;
 pub mod view;

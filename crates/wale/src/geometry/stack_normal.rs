@@ -17,7 +17,7 @@
 use glam::DVec3;
 
 use super::passes::Passes;
-use crate::model::{Network, NodeId};
+use crate::model::{Frame, Network, NodeId};
 
 /// Below this share of the flattest possible fit, a node's own normal gives way to its neighbours'.
 const TRUSTED: f64 = 0.05;
@@ -43,6 +43,13 @@ pub(super) fn stack_normals(
         normals[i] = (fit.normal * fit.trust + across * (1.0 - fit.trust)).normalize_or(across);
     }
     normals
+}
+
+/// Unit normals of a frame, one per node, from the back of the fabric to its front.
+#[must_use]
+pub fn fronts(network: &Network, frame: &Frame) -> Vec<DVec3> {
+    let periods = network.periods.unwrap_or_default();
+    stack_normals(network, &Passes::new(network), &frame.positions, periods, periods)
 }
 
 /// Sum of the trusted normals of the nodes next to a node.
