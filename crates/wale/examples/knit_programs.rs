@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         match read_knitout(&text) {
             Err(error) => println!("  {error}"),
             Ok(knitted) => {
-                let network = knit::network(&knitted.graph, &card);
+                let network = knit::network(&knitted.graph, card.knit().expect("a knit has the card of a knit"));
                 println!(
                     "  {} loops in {} × {}, {} unheld, {} nodes, {} yarns of {:?}, {:.0} ms",
                     knitted.graph.loops.len(),

@@ -22,8 +22,8 @@ fn out_of(network: &Network, yarn: usize) -> (usize, usize) {
 fn a_frame_that_closes_shears_the_weave_evenly() {
     let played = play("picture-frame.toml");
     let card = played.scene.fabric.woven().unwrap();
-    for time in [0.3, 0.6, 1.0] {
-        let angle = (50.0 * time as f64).to_radians();
+    for time in [0.3_f64, 0.6, 1.0] {
+        let angle = (50.0 * time).to_radians();
         // 21 × 21 crossings, of which those at the edges have half their neighbours, at corners a quarter.
         let expected = 400.0 * 0.5 * card.shear_stiffness * card.spacing[0] * angle * angle;
         let found = energy_at(&played, "shear", time);

@@ -226,7 +226,7 @@ fn energies_do_not_notice_rigid_motion() {
     let (yarn, card) = cards();
     let network = knit::fabric(&Chart::seed().repeat(6, 6).unwrap(), Working::default(), &card);
     let mut coordinates = Coordinates::new(&network);
-    let mechanics = Mechanics::new(&network, &yarn, &card, &mut coordinates);
+    let mechanics = Mechanics::new(&network, &(&yarn).into(), &(&card).into(), &mut coordinates);
     // Off the flat layout, where every kind of energy has something to say.
     let bent = |x: DVec3| x + 1e-3 * DVec3::new((900.0 * x.y).sin(), (700.0 * x.x).cos(), (800.0 * (x.x + x.y)).sin());
     let turn = DQuat::from_scaled_axis(DVec3::new(0.4, -1.1, 0.7));

@@ -65,3 +65,51 @@ fn sizes_relative_to_stockinette() {
     println!("rms of the logarithms: {rms:.3}");
     assert!(rms <= BAR, "rms {rms:.3}");
 }
+
+/// Munden's constants of relaxed stockinette of a yarn: `Kc = ℓ/C`, `Kw = ℓ/W`, `Ks = Kc Kw`, with the length of real yarn.
+fn munden(yarn: &YarnCard, loop_length: f64) -> [f64; 3] {
+    let proportions = LoopProportions::default();
+    let card = proportions.card(yarn, proportions.path_ratio * loop_length);
+    let tile = knit::tile(&Chart::stockinette(), &card).unwrap();
+    let relaxed = relax_tile(&tile, yarn, &card, &TileSettings::default());
+    assert!(relaxed.converged);
+    let [course, wale] = [relaxed.course_spacing, relaxed.wale_spacing].map(|spacing| loop_length / spacing);
+    [course, wale, course * wale]
+}
+
+#[test]
+fn doubling_loop_and_yarn_leaves_mundens_constants_unchanged() {
+    let thin = wale::scene::Scene::from_text(
+        "schema = 1\n[fabric.chart]\npattern = \"stockinette\"\ncolumns = 2\nrows = 2\n",
+        "default.toml",
+    );
+    let thin = thin.unwrap().yarns.first().clone();
+    // Twice as thick of the same stuff: four times the area, sixteen times the second moment.
+    let thick = YarnCard {
+        radius: 2.0 * thin.radius,
+        linear_density: 4.0 * thin.linear_density,
+        stretch_stiffness: 4.0 * thin.stretch_stiffness,
+        bending_stiffness: 16.0 * thin.bending_stiffness,
+        ..thin.clone()
+    };
+    println!("loop length   yarn     Kc     Kw     Ks   Kc/Kw");
+    let table: Vec<[f64; 3]> = [(&thin, 0.015), (&thin, 0.02), (&thick, 0.04)]
+        .into_iter()
+        .map(|(yarn, length)| {
+            let [course, wale, stitch] = munden(yarn, length);
+            let thickness = 2e3 * yarn.radius;
+            println!(
+                "{:>8.1} mm  {thickness:.2} mm  {course:.3}  {wale:.3}  {stitch:.2}  {:.3}",
+                1e3 * length,
+                course / wale
+            );
+            [course, wale, stitch]
+        })
+        .collect();
+    for k in 0..3 {
+        assert!((table[2][k] / table[1][k] - 1.0).abs() < 0.01, "{table:?}");
+    }
+    // Fully relaxed plain knit of the literature: Kc 5.5, Kw 4.2, ratio about 1.3.
+    let [course, wale, _] = table[1];
+    assert!((course / 5.5 - 1.0).abs() < 0.1 && (wale / 4.2 - 1.0).abs() < 0.1, "{course} {wale}");
+}

@@ -44,7 +44,7 @@ mod tests {
     #[test]
     fn every_yarn_gives_another_scene_that_reads() {
         let [cotton, wool, acrylic] = [Preset::FineCottonJersey, Preset::WorstedWool, Preset::ThickAcrylic]
-            .map(|preset| Scene::from_text(&text(preset), "new.toml").unwrap().yarns);
-        assert!(cotton.radius < wool.radius && wool.radius < acrylic.radius);
+            .map(|preset| Scene::from_text(&text(preset), "new.toml").unwrap().yarns.first().radius);
+        assert!(cotton < wool && wool < acrylic);
     }
 }

@@ -21,7 +21,7 @@ pub(super) struct At {
 
 impl At {
     pub fn error(&self, reason: Reason) -> WifError {
-        WifError { line: self.line, span: self.span.clone(), reason }
+        WifError { line: self.line, span: self.span.clone(), reason: Box::new(reason) }
     }
 }
 

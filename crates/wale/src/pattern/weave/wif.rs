@@ -31,7 +31,7 @@ pub struct WifError {
     /// The bytes of the file that are wrong.
     pub span: Range<usize>,
     /// What is wrong.
-    pub reason: WifErrorReason,
+    pub reason: Box<WifErrorReason>,
 }
 
 /// What is wrong with a file.

@@ -91,8 +91,8 @@ fn bad_files_name_the_line_and_the_reason() {
     }
     assert!(refused("").0.contains("no WIF"));
     let utf16: Vec<u8> = [0xff, 0xfe].into_iter().chain(TWILL.encode_utf16().flat_map(u16::to_le_bytes)).collect();
-    assert_eq!(read_wif(&utf16).unwrap_err().reason, WifErrorReason::Utf16);
-    assert_eq!(read_wif(&utf16[2..]).unwrap_err().reason, WifErrorReason::Utf16);
+    assert_eq!(*read_wif(&utf16).unwrap_err().reason, WifErrorReason::Utf16);
+    assert_eq!(*read_wif(&utf16[2..]).unwrap_err().reason, WifErrorReason::Utf16);
 }
 
 #[test]

@@ -80,7 +80,7 @@ fn wif(name: &str, directory: Option<&Path>) -> Result<(Draft, PathBuf), Failure
     let path = path_beside(&key, name, directory)?;
     let bytes = read_bytes(&path, &key, name, LARGEST_WIF)?;
     let read = read_wif(&bytes).map_err(|error| {
-        let class = match error.reason {
+        let class = match *error.reason {
             WifErrorReason::TooLong { .. } | WifErrorReason::TooMany { .. } => ErrorClass::ResourceLimit,
             WifErrorReason::Size(DraftError::TooLarge { .. }) => ErrorClass::ResourceLimit,
             _ => ErrorClass::BadInput,
