@@ -60,8 +60,11 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
         inputs.push(path);
         draft
     };
-    let spacing = spacing(&draft, text)?;
     let bias = bias(text)?;
+    if bias.is_none() {
+        counts(text)?;
+    }
+    let spacing = spacing(&draft, text)?;
     let draft = sized(draft, text, bias.map(|cut| cut.reach(spacing)))?;
     let (draft, yarns) = threads(draft, text)?;
     let mut woven = Woven::new(draft, spacing);
@@ -111,6 +114,19 @@ fn bias(text: &WeaveText) -> Result<Option<BiasCut>, Complaint> {
     Ok(Some(BiasCut { angle: cut.angle.si(), size: [cut.width.si(), cut.length.si()] }))
 }
 
+/// Ends and picks are given, unless a file has them, and are some.
+fn counts(text: &WeaveText) -> Result<(), Complaint> {
+    for (key, count) in [("ends", text.ends), ("picks", text.picks)] {
+        if count.is_none() && text.file.is_none() {
+            return Err(Complaint::new(HERE, format!("a weave needs {key}")).mend(format!("add {key} = 40")));
+        }
+        if count == Some(0) {
+            return Err(Complaint::new(format!("{HERE}.{key}"), format!("{key} must be at least 1")));
+        }
+    }
+    Ok(())
+}
+
 fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draft, Complaint> {
     let refused = |error: DraftError| {
         let key = match reach {
@@ -129,14 +145,6 @@ fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draf
         let [ends, picks] = reach.map(|count| count as u64 + 1);
         Draft::check_size(ends, picks).map_err(refused)?;
         return draft.repeat(ends as usize, picks as usize).map_err(refused);
-    }
-    for (key, count) in [("ends", text.ends), ("picks", text.picks)] {
-        if count.is_none() && text.file.is_none() {
-            return Err(Complaint::new(HERE, format!("a weave needs {key}")).mend(format!("add {key} = 40")));
-        }
-        if count == Some(0) {
-            return Err(Complaint::new(format!("{HERE}.{key}"), format!("{key} must be at least 1")));
-        }
     }
     let ends = text.ends.unwrap_or(draft.ends() as u64);
     let picks = text.picks.unwrap_or(draft.picks() as u64);
