@@ -174,3 +174,33 @@ fn collected_drafts_are_read() {
     }
     assert_eq!(count, 10);
 }
+
+#[test]
+fn a_fabric_that_has_lost_contacts_is_taken_up_to_the_same_bits() {
+    let scene = scene(
+        "pattern = \"plain\"\nends = 4\npicks = 4\nend_spacing = \"0.6 mm\"\npick_spacing = \"0.6 mm\"\nselvedge = \"cut\"",
+        "[simulation]\nduration = \"1 s\"\ngravity = [0, 0, 0]\n\
+         [[grip]]\nname = \"still\"\nselect = { edge = \"top\" }\n\
+         [[grip]]\nname = \"pick\"\nselect = { yarn_end = { yarn = \"weft\", number = 1, end = \"last\" } }\n\
+         motion = { velocity = [\"10 mm/s\", 0, 0] }\n",
+    );
+    let new = || Simulation::new(network(&scene), &scene.yarns, &scene.fabric, scene.plan.clone());
+    let out = |simulation: &Simulation| simulation.network().pulled_out.iter().filter(|out| **out).count();
+    let mut first = new();
+    while out(&first) < 2 {
+        first.step().unwrap();
+        assert!(!first.finished(), "no contact was left");
+    }
+    let mut second = new();
+    assert!(second.restore(first.state().clone()));
+    assert_eq!(second.network().pulled_out, first.network().pulled_out);
+    for _ in 0..20 {
+        first.step().unwrap();
+        second.step().unwrap();
+    }
+    assert_eq!(first.state(), second.state());
+    // Back to where nothing had been pulled out yet.
+    let untouched = new().state().clone();
+    assert!(second.restore(untouched));
+    assert_eq!(out(&second), 0);
+}

@@ -43,18 +43,13 @@ fn run(folder: &Path, as_json: bool) -> Result<(), Failure> {
     let opened = OpenedRun::open(folder, FrameChoice::All)?;
     let (network, settings) = (&opened.network, opened.curve_settings());
     let census = Census::of(network, &opened.scene.yarns, &opened.scene.fabric);
-    let contacts = contacts(network);
-    let joined = |a: u32, b: u32| {
-        let [a, b] = [a, b].map(|segment| contacts[segment as usize]);
-        a.iter().any(|contact| b.contains(contact))
-    };
-    let mut passages = Passages::default();
+    let mut passages = Passages::of(network);
     let mut before: Option<Frame> = None;
     let mut looked = Vec::new();
     for index in opened.frames.clone() {
         let frame = opened.frame(index)?;
         if let Some(before) = &before {
-            passages.follow(&opened.curves(before), &opened.curves(&frame), joined);
+            passages.follow(&opened.curves(before), &opened.curves(&frame));
         }
         let last = index + 1 == opened.frames.end;
         if before.is_none() || last {
@@ -64,17 +59,6 @@ fn run(folder: &Path, as_json: bool) -> Result<(), Failure> {
         before = Some(frame);
     }
     report(folder, as_json, &looked, Some((network, &passages)))
-}
-
-/// The contacts at both ends of the segment after each pass; a node of no stitch contact is one of its own.
-fn contacts(network: &Network) -> Vec<[u32; 2]> {
-    let mut of_node: Vec<u32> = (0..network.node_count() as u32).collect();
-    for stitch in &network.stitches {
-        of_node[stitch.nodes[1].index()] = stitch.nodes[0].0;
-    }
-    let node = |pass: usize| of_node[network.pass_node[pass].index()];
-    let last = network.pass_count().saturating_sub(1);
-    (0..network.pass_count()).map(|pass| [node(pass), node((pass + 1).min(last))]).collect()
 }
 
 fn look(network: &Network, frame: &Frame, settings: &CurveSettings, dropped: Vec<[u32; 2]>) -> Found {

@@ -11,10 +11,13 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Curve;
+use crate::model::Network;
 
 /// Crossings of pairs of yarn segments, each named by the pass before it.
 #[derive(Clone, Debug, Default)]
 pub struct Passages {
+    /// The contacts at both ends of the segment after each pass; a node of no stitch contact is one of its own.
+    contacts: Vec<[u32; 2]>,
     /// Crossings with their sign, by the two segments, the smaller first.
     net: BTreeMap<[u32; 2], i32>,
     /// All of them.
@@ -32,9 +35,27 @@ struct Piece {
 }
 
 impl Passages {
-    /// Follows the centre lines from one frame to the next. Both have the same yarns and as many points. `joined` says of two
-    /// segments whether they meet in a contact, where it is the order in the contact that keeps them apart.
-    pub fn follow(&mut self, before: &[Curve], after: &[Curve], joined: impl Fn(u32, u32) -> bool + Sync) {
+    /// Of a network. Segments that meet in a contact are not looked at: there it is the order in the contact that keeps
+    /// them apart.
+    #[must_use]
+    pub fn of(network: &Network) -> Self {
+        let mut of_node: Vec<u32> = (0..network.node_count() as u32).collect();
+        for stitch in &network.stitches {
+            of_node[stitch.nodes[1].index()] = stitch.nodes[0].0;
+        }
+        let node = |pass: usize| of_node[network.pass_node[pass].index()];
+        let last = network.pass_count().saturating_sub(1);
+        let contacts = (0..network.pass_count()).map(|pass| [node(pass), node((pass + 1).min(last))]).collect();
+        Self { contacts, ..Self::default() }
+    }
+
+    fn joined(&self, a: u32, b: u32) -> bool {
+        let of = |segment: u32| self.contacts.get(segment as usize).map_or(&[][..], |contacts| contacts);
+        of(a).iter().any(|contact| of(b).contains(contact))
+    }
+
+    /// Follows the centre lines from one frame to the next. Both have the same yarns and as many points.
+    pub fn follow(&mut self, before: &[Curve], after: &[Curve]) {
         let pieces = pieces(before, after);
         let reach = pieces.iter().map(|piece| size(&bounds(piece))).sum::<f64>() / pieces.len().max(1) as f64;
         let cell_of = |x: DVec3| (x / reach.max(1e-9)).floor().as_i64vec3().to_array();
@@ -52,7 +73,7 @@ impl Passages {
         let found: Vec<([u32; 2], i32)> = cells
             .par_iter()
             .flat_map_iter(|(cell, list)| {
-                let (pieces, joined) = (&pieces, &joined);
+                let (pieces, this) = (&pieces, &*self);
                 list.iter().enumerate().flat_map(move |(k, &a)| {
                     list[k + 1..].iter().filter_map(move |&b| {
                         let (a, b) = (&pieces[a as usize], &pieces[b as usize]);
@@ -60,7 +81,7 @@ impl Passages {
                         let ([la, ha], [lb, hb]) = (bounds(a), bounds(b));
                         let apart = la.cmpgt(hb).any() || lb.cmpgt(ha).any();
                         // Of the cells that both are in, one counts.
-                        if near || apart || cell_of(la.max(lb)) != *cell || joined(a.segment, b.segment) {
+                        if near || apart || cell_of(la.max(lb)) != *cell || this.joined(a.segment, b.segment) {
                             return None;
                         }
                         let sign = crossing(a, b);
@@ -185,7 +206,7 @@ mod tests {
         let still = yarn(DVec3::new(0.13, 0.21, 0.0), DVec3::X, 0);
         for [from, to] in ways {
             let frames = [from, to].map(|middle| vec![still.clone(), yarn(*middle, DVec3::new(0.1, 1.0, 0.02), 20)]);
-            passages.follow(&frames[0], &frames[1], |_, _| false);
+            passages.follow(&frames[0], &frames[1]);
         }
         (passages.crossings, passages.pairs().count())
     }
@@ -208,10 +229,12 @@ mod tests {
 
     #[test]
     fn contacts_are_left_to_their_order() {
-        let mut passages = Passages::default();
         let still = yarn(DVec3::ZERO, DVec3::X, 0);
-        let frames = [0.5, -0.5].map(|z| vec![still.clone(), yarn(DVec3::new(0.1, 0.2, z), DVec3::Y, 20)]);
-        passages.follow(&frames[0], &frames[1], |_, _| true);
-        assert_eq!(passages.crossings, 0);
+        let frames = [0.5, -0.5].map(|z| vec![still.clone(), yarn(DVec3::new(0.1, 0.2, z), DVec3::Y, 11)]);
+        let one_contact = Passages { contacts: vec![[7, 7]; 22], ..Passages::default() };
+        for (mut passages, expected) in [(Passages::default(), 1), (one_contact, 0)] {
+            passages.follow(&frames[0], &frames[1]);
+            assert_eq!(passages.crossings, expected);
+        }
     }
 }

@@ -19,6 +19,8 @@ pub struct Played {
     pub first: Shape,
     pub last: Shape,
     pub steps: Vec<StepReport>,
+    /// Every frame that is due.
+    pub frames: Vec<Frame>,
     pub simulation: Simulation,
     /// Speed of the nodes at the end, root mean square \[m/s\].
     pub speed: f64,
@@ -34,8 +36,10 @@ pub fn play(name: &str) -> Played {
     let mut simulation = Simulation::new(start.network.clone(), &scene.yarns, &scene.fabric, scene.plan.clone());
     let first = Shape::of(simulation.network(), &simulation.frame());
     let mut steps = Vec::new();
+    let mut frames = vec![simulation.frame()];
     while !simulation.finished() {
         steps.push(simulation.step().unwrap());
+        frames.extend(simulation.frame_due().map(|_| simulation.frame()));
     }
     let nodes = simulation.network().node_count();
     let velocities = &simulation.state().velocities[..5 * nodes];
@@ -45,6 +49,7 @@ pub fn play(name: &str) -> Played {
         last: Shape::of(simulation.network(), &simulation.frame()),
         start,
         steps,
+        frames,
         speed: (squares / nodes as f64).sqrt(),
         simulation,
         scene,

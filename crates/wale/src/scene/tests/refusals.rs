@@ -75,7 +75,7 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
             Input,
         ),
         (
-            "schema = 1\n[fabric.weave]\npattern = \"plain\"\nends = 90000\npicks = 90000\n",
+            "schema = 1\n[fabric.weave]\npattern = \"plain\"\nends = 90000\npicks = 90000\nend_spacing = 1e-3\npick_spacing = 1e-3\n",
             "90000",
             "the limit is 16000000",
             "smaller",
