@@ -124,8 +124,9 @@ fn a_weave_on_a_ball_shears() {
         (at(near(1).unwrap()) - at(near(-1).unwrap())).normalize()
     };
     let sheared = network.crossings.iter().map(|crossing| along(crossing.warp).dot(along(crossing.weft)).abs().asin());
+    // A sheet that cannot shear, as paper, would fold and keep its right angles.
     let most = sheared.fold(0.0, f64::max).to_degrees();
-    assert!((15.0..80.0).contains(&most), "{most} degrees");
+    assert!((5.0..80.0).contains(&most), "{most} degrees");
     let heights = frame.positions.iter().map(|x| x.z);
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(z), b.max(z)));
     assert!(high < 21e-3 && low < 8e-3, "{low} {high}");
