@@ -36,9 +36,8 @@ use std::path::{Path, PathBuf};
 
 pub use error::{ErrorClass, SceneError};
 
-use crate::model::{FabricCard, Network, Plan, Yarns};
+use crate::model::{FabricCard, Network, Plan, YarnId, Yarns};
 use crate::pattern::Structure;
-use crate::pattern::weave::Woven;
 use error::{Complaint, nearest};
 use resolve::Failure;
 use schema::{PresetName, SceneText};
@@ -83,9 +82,11 @@ impl Scene {
             *color = self.yarn_colors.get(usize::from(*kind)).copied().unwrap_or(first);
         }
         // Threads of a draft may have colours of their own.
-        let threads = self.structure.woven().map(Woven::threads).unwrap_or_default();
-        for (color, thread) in network.yarn_color.iter_mut().zip(threads) {
-            *color = thread.color.unwrap_or(*color);
+        let Some(woven) = self.structure.woven() else { return };
+        for yarn in (0..network.yarn_count()).map(YarnId::new) {
+            if let Some(color) = woven.thread(network, yarn).and_then(|thread| thread.color) {
+                network.yarn_color[yarn.index()] = color;
+            }
         }
     }
 

@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3};
 
 use super::draft::{Draft, Thread};
-use crate::model::{Crossing, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnRole};
+use crate::model::{Crossing, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnId, YarnRole};
 
 /// How the weft goes at the sides.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -113,12 +113,17 @@ impl Woven {
         self.selvedge == Selvedge::Cut || self.bias.is_some()
     }
 
-    /// The thread that each yarn of the network begins with, in their order, if none were cut away.
+    /// The thread that a yarn of the network is, or begins with.
     #[must_use]
-    pub fn threads(&self) -> Vec<Thread> {
-        let begins = |pick: &usize| *pick == 0 || self.is_cut_after(pick - 1);
-        let weft = (0..self.draft.picks()).filter(begins).map(|pick| self.draft.weft[pick]);
-        self.draft.warp.iter().copied().chain(weft).collect()
+    pub fn thread(&self, network: &Network, yarn: YarnId) -> Option<Thread> {
+        // The first pass is that of its free end, the second its first crossing.
+        let crossing = network.pass_node.get(network.yarn_passes(yarn).start + 1)?;
+        let [end, pick] = network.chart_place[crossing.index()].map(|place| place as usize);
+        match network.yarn_role[yarn.index()] {
+            YarnRole::Warp => self.draft.warp.get(end).copied(),
+            YarnRole::Weft => self.draft.weft.get(pick).copied(),
+            YarnRole::Knitted => None,
+        }
     }
 }
 
@@ -292,7 +297,6 @@ impl Weaver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::YarnId;
 
     #[test]
     fn every_crossing_has_both_yarns_in_the_drafts_order() {
@@ -312,7 +316,6 @@ mod tests {
             }
             let cut = selvedge == Selvedge::Cut;
             assert_eq!(network.yarn_count(), if cut { 12 } else { 8 });
-            assert_eq!(woven.threads().len(), network.yarn_count());
             let longest = network.floats.iter().copied().max();
             assert_eq!(longest, Some(2));
             // Everything is as long as it is laid.
@@ -349,13 +352,30 @@ mod tests {
     }
 
     #[test]
+    fn threads_of_a_piece_are_known_where_others_are_cut_away() {
+        let cut = BiasCut { angle: 0.5, size: [0.6e-3, 30e-3] };
+        let reach = cut.reach([1e-3; 2]).map(|n| n as usize + 1);
+        let mut woven = Woven::new(Draft::plain().repeat(reach[0], reach[1]).unwrap(), [1e-3; 2]);
+        woven.bias = Some(cut);
+        let threads = woven.draft.warp.iter_mut().chain(&mut woven.draft.weft);
+        threads.enumerate().for_each(|(k, thread)| thread.color = Some([k as u8, 0, 0]));
+        let network = woven.network([1e-3; 2]);
+        assert!(network.yarn_count() < woven.draft.ends() + woven.draft.picks());
+        for yarn in (0..network.yarn_count()).map(YarnId::new) {
+            assert_eq!(woven.thread(&network, yarn).unwrap().color, Some(network.yarn_color[yarn.index()]));
+        }
+    }
+
+    #[test]
     fn the_weft_is_cut_where_its_yarn_changes() {
         let mut draft = Draft::plain().repeat(4, 6).unwrap();
         draft.weft[2].yarn = 2;
         draft.weft[3].yarn = 2;
         draft.weft[5].color = Some([1, 2, 3]);
-        let network = Woven::new(draft, [1e-3; 2]).network([1e-3; 2]);
+        let woven = Woven::new(draft, [1e-3; 2]);
+        let network = woven.network([1e-3; 2]);
         assert_eq!(network.yarn_kind[4..], [1, 2, 1, 1]);
         assert_eq!(network.yarn_color[7], [1, 2, 3]);
+        assert_eq!(woven.thread(&network, YarnId::new(5)).unwrap().yarn, 2);
     }
 }

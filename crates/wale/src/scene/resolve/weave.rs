@@ -142,7 +142,7 @@ fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draf
         }
     };
     if let Some(reach) = reach {
-        let [ends, picks] = reach.map(|count| count as u64 + 1);
+        let [ends, picks] = reach.map(|count| (count as u64).saturating_add(1));
         Draft::check_size(ends, picks).map_err(refused)?;
         return draft.repeat(ends as usize, picks as usize).map_err(refused);
     }

@@ -61,6 +61,9 @@ fn a_piece_on_the_bias_is_as_large_as_the_scene_says() {
     assert_eq!(resolved_again(&scene), scene);
     let error = Scene::from_text(&format!("schema = 1\n{weave}ends = 30\n"), "scene.toml").unwrap_err();
     assert!(error.to_string().contains("ends beside bias"), "{error}");
+    let tiny = weave.replace("end_spacing = \"1 mm\"", "end_spacing = 1e-300");
+    let error = Scene::from_text(&format!("schema = 1\n{tiny}"), "scene.toml").unwrap_err();
+    assert!(error.to_string().contains("the limit is 16000000"), "{error}");
 }
 
 #[test]
