@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 
 use super::schema::{
     Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText,
-    KeyText, MotionText, ObstacleText, OtherYarnText, OutputText, PlaneText, PullText, RegionText, SceneText,
-    SelectText, SelvedgeText, SimulationText, SphereText, WeaveText, WhichEnd, Worked, YarnEndText, YarnText,
+    KeyText, MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
+    SelvedgeText, SimulationText, SphereText, WeaveText, WhichEnd, Worked, YarnEndText, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
@@ -202,8 +202,12 @@ fn name(yarn: u8) -> char {
 }
 
 /// The yarns after the first, by their letters.
-fn other_yarns(scene: &Scene) -> Written<BTreeMap<String, OtherYarnText>> {
-    (1..scene.yarn_colors.len()).map(|at| Ok((yarn_name(scene, at), yarn(scene, at)?.into()))).collect()
+fn other_yarns(scene: &Scene) -> Written<BTreeMap<String, YarnText>> {
+    (1..scene.yarn_colors.len())
+        .map(|at| {
+            Ok((yarn_name(scene, at), YarnText { mass_damping: None, stiffness_damping: None, ..yarn(scene, at)? }))
+        })
+        .collect()
 }
 
 /// Letters name the yarns of a chart and of a draft, carriers those of a program.

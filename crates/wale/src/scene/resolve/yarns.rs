@@ -11,7 +11,7 @@ use crate::pattern::image::{self, LARGEST_IMAGE, Pixels};
 use crate::pattern::instructions::MOST_YARNS;
 use crate::pattern::{Chart, Stitch};
 use crate::scene::error::{Complaint, ErrorClass, nearest, shortened};
-use crate::scene::schema::{ChartText, OtherYarnText, YarnText};
+use crate::scene::schema::{ChartText, YarnText};
 
 /// What an image draws, the lowest row first.
 pub(super) enum Drawn {
@@ -148,7 +148,7 @@ pub(super) fn cards(
     names: &[String],
     first: &YarnText,
     base: &YarnText,
-    others: &BTreeMap<String, OtherYarnText>,
+    others: &BTreeMap<String, YarnText>,
 ) -> Result<(Yarns, Vec<[u8; 3]>), Complaint> {
     for other in others.keys() {
         if !names.contains(other) {
@@ -165,7 +165,11 @@ pub(super) fn cards(
     let own = yarn::resolve("yarn", first, base)?;
     let behind = yarn::said_over_base(first, base);
     let of = |name: &String| match others.get(name) {
-        Some(other) => yarn::resolve(&format!("yarns.{name}"), &other.yarn(), &behind),
+        Some(other) => {
+            let path = format!("yarns.{name}");
+            of_the_first(&path, other)?;
+            yarn::resolve(&path, other, &behind)
+        }
         None => Ok(own.clone()),
     };
     let found = names.iter().map(of).collect::<Result<Vec<_>, _>>()?;
@@ -173,4 +177,19 @@ pub(super) fn cards(
     let colors = found.iter().map(|(_, color)| *color).collect();
     let first = found.remove(0).0;
     Ok((Yarns::new(first, found.into_iter().map(|(card, _)| card)), colors))
+}
+
+/// What only the scene's first yarn says.
+fn of_the_first(path: &str, text: &YarnText) -> Result<(), Complaint> {
+    let keys = [
+        ("preset", text.preset.is_some()),
+        ("mass_damping", text.mass_damping.is_some()),
+        ("stiffness_damping", text.stiffness_damping.is_some()),
+    ];
+    match keys.iter().find(|(_, given)| *given) {
+        Some((key, _)) => Err(Complaint::new(format!("{path}.{key}"), format!("{key} of one yarn among others"))
+            .why("it is that of the whole fabric")
+            .mend(format!("give {key} in [yarn]"))),
+        None => Ok(()),
+    }
 }

@@ -23,7 +23,7 @@ pub use happening::{
 };
 pub use simulation::{Gravity, OutputText, SimulationText};
 pub use weave::{BiasText, SelvedgeText, WeaveText};
-pub use yarn::{Color, OtherYarnText, PresetName, YarnText};
+pub use yarn::{Color, PresetName, YarnText};
 
 use super::dimensions::{Force, Length, Ratio, Speed};
 use super::units::Quantity;
@@ -54,8 +54,9 @@ pub struct SceneText {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub yarn: Option<YarnText>,
     /// Other yarns by the names that the chart or the weave gives them; a name that is not here is that of the yarn above.
+    /// What is said of one goes before what is said of that; it has no preset and no damping of its own.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub yarns: BTreeMap<String, OtherYarnText>,
+    pub yarns: BTreeMap<String, YarnText>,
     /// The fabric, with its chart or its weave. Required.
     pub fabric: FabricText,
     /// Time, forces from outside, and the solver.

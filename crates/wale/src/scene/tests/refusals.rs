@@ -37,6 +37,13 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
         ("schema = 1\n[fabric]\n", "fabric", "no chart", "[fabric.chart]", Input),
         ("schema = 1\nschema = 1\n", "schema", "duplicate key", "", Input),
         ("schema = \n", "", "", "", Input),
+        (
+            "schema = 1\n[yarns.B]\npreset = \"worsted-wool\"\n[fabric.chart]\nsymbols = [\"kk\"]\nstripes = [\"A\", \"B\"]\n",
+            "\"worsted-wool\"",
+            "preset of one yarn among others",
+            "in [yarn]",
+            Input,
+        ),
         ("schema = 1\n[fabric.weave]\n", "weave", "none of pattern, symbols, file", "", Input),
         ("schema = 1\n[fabric.weave]\npattern = \"plain\"\nends = 9\n", "weave", "needs picks", "picks = 40", Input),
         (
