@@ -2,6 +2,7 @@
 
 pub mod block_matrix;
 pub mod block_pattern;
+pub mod bordered;
 pub mod check;
 pub mod coarse_space;
 pub mod conjugate_gradient;

@@ -69,7 +69,7 @@ fn relaxed(chart: &Chart, yarn: &YarnCard, card: &KnitCard) -> Snapshot {
         DVec3::X * rest.wale_spacing * chart.column_count() as f64,
         DVec3::Y * rest.course_spacing * chart.row_count() as f64,
     ];
-    let frame = TileCoordinates::new(&network).own().frame(0.0, &rest.unknowns);
+    let frame = TileCoordinates::new(&network).own().frame(0.0, &rest.coordinates);
     let one = Snapshot::of(&network, &frame, &CurveSettings { periods: Some(periods), ..CurveSettings::new(RADIUS) });
     let mut many = Snapshot { curves: Vec::new(), ..one.clone() };
     for (i, j) in (0..8).flat_map(|i| (0..6).map(move |j| (i, j))) {
@@ -117,6 +117,7 @@ fn cards() -> (YarnCard, KnitCard) {
         spacing_stiffness: 2e3 * force,
         spacing_leg: 0.221 * LOOP,
         spacing_head_sinker: 0.073 * LOOP,
+        thickness: None,
         anchor_stiffness: 1.0,
         residual_compression: 0.0,
     };

@@ -38,6 +38,15 @@ fn the_sides_of_stockinette_roll_to_the_back() {
 }
 
 #[test]
+fn thick_contacts_roll_the_sides_of_stockinette_to_the_back() {
+    let thick = play("thick-contacts.toml");
+    println!("thick contacts: {:?}, speed {:.1} mm/s", thick.last, 1e3 * thick.speed);
+    assert!(thick.last.side_edges.course_per_m < -50.0, "negative is to the back");
+    let stretch = thick.steps.iter().fold(0.0f64, |most, step| most.max(step.largest_stretch));
+    assert!(stretch < 1.1, "yarns are as long as they are: {stretch}");
+}
+
+#[test]
 fn a_rib_unfolds_then_slides_then_stretches() {
     let rib = play("rib-stretch.toml");
     // Slopes of the force in the three regimes [N/m]: the grip moves 60 mm a second.

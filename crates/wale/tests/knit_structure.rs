@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use cards::cards;
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, KnitCard, Network, NodeId, PassKind, WovenCard, YarnCard, YarnId};
+use wale::model::{FabricCard, KnitCard, LoopProportions, Network, NodeId, PassKind, WovenCard, YarnCard, YarnId};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::weave::peirce::geometry;
 use wale::pattern::weave::{Draft, Woven};
@@ -226,12 +226,22 @@ fn energies_do_not_notice_rigid_motion() {
     let (yarn, card) = cards();
     let knitted = knit::fabric(&Chart::seed().repeat(6, 6).unwrap(), Working::default(), &card);
     // What a knit does not have, and what it may have nothing of.
-    check_rigid_motion(&knitted, &yarn, &FabricCard::from(&card), &["shear", "stitch length"]);
+    check_rigid_motion(&knitted, &yarn, &FabricCard::from(&card), &["shear", "stitch length", "leg contact"]);
+    let mut thick = LoopProportions::thick().card(&yarn, card.loop_length);
+    // Far enough for legs of the layout to touch.
+    thick.thickness.as_mut().unwrap().leg_distance = card.wale_spacing;
+    let knitted = knit::fabric(&Chart::seed().repeat(6, 6).unwrap(), Working::default(), &thick);
+    check_rigid_motion(&knitted, &yarn, &FabricCard::from(&thick), &["shear", "stitch length"]);
     let draft = Draft::twill(2, 1).unwrap().repeat(6, 6).unwrap();
     let spacing = [4.0 * yarn.radius, 5.0 * yarn.radius];
     let woven = WovenCard::new(&yarn, &yarn, &geometry(&draft, [&yarn; 2], spacing).unwrap());
     let network = Woven::new(draft, spacing).network(spacing);
-    check_rigid_motion(&network, &yarn, &FabricCard::from(&woven), &["wrapping", "stitch length", "spacing"]);
+    check_rigid_motion(
+        &network,
+        &yarn,
+        &FabricCard::from(&woven),
+        &["wrapping", "stitch length", "spacing", "leg contact"],
+    );
 }
 
 fn check_rigid_motion(network: &Network, yarn: &YarnCard, card: &FabricCard, absent: &[&str]) {
@@ -247,10 +257,13 @@ fn check_rigid_motion(network: &Network, yarn: &YarnCard, card: &FabricCard, abs
     let shifted: Vec<f64> = network.arc_length.iter().map(|u| u + 0.25).collect();
     let q = coordinates.gather(&here, &network.arc_length);
     for other in [coordinates.gather(&there, &network.arc_length), coordinates.gather(&here, &shifted)] {
-        for set in mechanics.sets() {
-            let (a, b) = (set.total(&q), set.total(&other));
-            assert!(a > 0.0 || absent.contains(&set.name()), "{} is zero", set.name());
-            assert!((a - b).abs() <= 1e-9 * a.abs().max(1e-12), "{}: {a} {b}", set.name());
+        let total = |name: &str, q: &[f64]| -> f64 {
+            mechanics.sets().iter().filter(|set| set.name() == name).map(|set| set.total(q)).sum()
+        };
+        for name in mechanics.sets().map(|set| set.name()) {
+            let (a, b) = (total(name, &q), total(name, &other));
+            assert!(a > 0.0 || absent.contains(&name), "{name} is zero");
+            assert!((a - b).abs() <= 1e-9 * a.abs().max(1e-12), "{name}: {a} {b}");
         }
     }
     // Action and reaction: forces sum to zero.

@@ -129,3 +129,18 @@ fn the_same_bits_on_any_number_of_threads() {
         assert!(one.anchors == other.anchors);
     }
 }
+
+#[test]
+fn thick_contacts_move_as_others_do() {
+    let scene = scene(
+        "pattern = \"rib 1x1\"\ncolumns = 6\nrows = 6\n[fabric]\ncontacts = \"thick\"\n[simulation]\ngravity = 0",
+    );
+    let mut simulation = simulation(&scene);
+    while simulation.state().time < 0.1 {
+        let report = simulation.step().unwrap();
+        assert!(report.largest_stretch < 1.1, "{}", report.largest_stretch);
+    }
+    let report = simulation.step().unwrap();
+    let of = |kind: &str| report.energies.iter().find(|(name, _)| *name == kind).map_or(0.0, |(_, energy)| *energy);
+    assert!(of("stretch") > 0.0 && of("bending") > 0.0);
+}

@@ -1,8 +1,7 @@
 //! `wale relax`: one repeat of the fabric brought to rest, endless along both directions and without friction.
 
-use rayon::prelude::*;
 use serde_json::json;
-use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
+use wale::dynamics::tile_equilibrium::{TileSettings, relax_from_starts};
 use wale::measure::Census;
 use wale::pattern::knit;
 
@@ -11,8 +10,8 @@ use crate::exit::{Code, Failure};
 use crate::opened::OpenedScene;
 use crate::{output, say};
 
-/// Most loops of a repeat; its system is solved densely.
-const MOST_LOOPS: usize = 400;
+/// Most loops of a repeat: one of as many takes minutes.
+const MOST_LOOPS: usize = 4000;
 
 /// Relaxes it.
 pub fn relax(arguments: &Relax) -> Result<(), Failure> {
@@ -40,18 +39,9 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     }
     let tile = knit::tile(&repeat, card)
         .map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.scene.display())))?;
-    let mut found: Vec<(u64, TileEquilibrium)> = (1..=u64::from(arguments.starts))
-        .into_par_iter()
-        .map(|seed| {
-            let settings = TileSettings { seed, bed: arguments.bed, ..TileSettings::default() };
-            (seed, relax_tile(&tile, yarns, card, &settings))
-        })
-        .collect();
-    // The lowest energy is the one that a swatch shaken long enough would find.
-    found.sort_by(|a, b| {
-        (!a.1.converged, a.1.energy).partial_cmp(&(!b.1.converged, b.1.energy)).unwrap_or(a.0.cmp(&b.0))
-    });
-    let (seed, best) = &found[0];
+    let settings = TileSettings { bed: arguments.bed, ..TileSettings::default() };
+    let found = relax_from_starts(&tile, yarns, card, &settings, arguments.starts as usize);
+    let best = &found[0];
     if !best.converged {
         return Err(Failure::new(
             Code::NotConverged,
@@ -77,9 +67,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
             "energy_per_loop_J": best.energy,
             "iterations": best.iterations,
             "residual": best.residual,
-            "start": seed,
-            "starts": found.iter().map(|(seed, at)| json!({
-                "start": seed,
+            "starts": found.iter().map(|at| json!({
                 "converged": at.converged,
                 "wale_spacing_m": at.wale_spacing,
                 "course_spacing_m": at.course_spacing,
@@ -93,7 +81,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     say!("  stitch   {:.3} mm wide, {:.3} mm high, {:.2} loops/cm²", 1e3 * width, 1e3 * height, 1e-4 * density)?;
     say!("  chart    {:.1} × {:.1} mm lying flat", 1e3 * width * columns as f64, 1e3 * height * rows as f64)?;
     say!("  mass     {:.0} g/m²", 1e3 * areal_mass)?;
-    let others = found.iter().filter(|(_, at)| at.converged && at.energy > best.energy * (1.0 + 1e-6)).count();
+    let others = found.iter().filter(|at| at.converged && at.energy > best.energy * (1.0 + 1e-6)).count();
     if others > 0 {
         say!("  starts   {others} of {} came to rest higher: the equilibrium is not unique", found.len())?;
     }

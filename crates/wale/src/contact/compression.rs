@@ -4,9 +4,11 @@ use glam::DVec3;
 use rayon::prelude::*;
 use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
 
+use crate::energy::thick::normal;
 use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
 use crate::fabric::mechanics::chain_stiffness;
+use crate::fabric::sides::Sides;
 use crate::model::{FabricCard, Network, NodeId, PassId, SegmentKind, YarnCard, YarnRole, Yarns};
 
 /// Compression of contact nodes from the tension of their yarns.
@@ -40,6 +42,27 @@ pub struct Compression {
     contact_of: Vec<Option<u32>>,
     /// Contacts of parallel yarns: contact, the pass nearer to the loop that was worked, and the one beyond it.
     parallel: Vec<(usize, [PassId; 2])>,
+    /// Where yarns with a thickness lie; none for yarns that meet in one point.
+    normals: Option<Normals>,
+}
+
+/// The nodes around each node of a stitch contact, whose triangle has the contact's normal.
+#[derive(Clone, Debug)]
+struct Normals {
+    around: Vec<Option<[u32; 3]>>,
+    softness: f64,
+}
+
+impl Normals {
+    fn of(&self, q: &[f64], node: usize) -> [f64; 3] {
+        let Some(corners) = self.around[node] else { return [0.0; 3] };
+        let [a, b, c] = corners.map(|node| point(q, node as usize));
+        normal(a, b, c, self.softness)
+    }
+}
+
+fn point(q: &[f64], node: usize) -> [f64; 3] {
+    std::array::from_fn(|k| q[node * BLOCK + k])
 }
 
 /// What a yarn pulls with.
@@ -72,7 +95,7 @@ struct Stack {
 }
 
 /// Blocks and slots of a pass and of the passes before and after it; a missing one is the pass itself.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Neighbours {
     block: [u32; 3],
     slot: [u32; 3],
@@ -81,6 +104,8 @@ struct Neighbours {
     /// Whether they go to the other side of the fabric.
     interlaces: [bool; 2],
     strand: u16,
+    /// How far in front of their nodes the passes lie \[m\].
+    offset: [f64; 3],
 }
 
 impl Compression {
@@ -99,6 +124,8 @@ impl Compression {
                 }) as u16
             })
             .collect();
+        let thickness = card.knit().and_then(|card| card.thickness);
+        let sides = thickness.map(|thickness| Sides::new(network, thickness.contact_distance));
         let of = |pass: PassId| {
             let yarn = yarn_of[pass.index()];
             let ends =
@@ -108,6 +135,7 @@ impl Compression {
                 chain: are(SegmentKind::Chain),
                 interlaces: are(SegmentKind::Interlacing),
                 strand: strand_of[yarn.index()],
+                offset: sides.as_ref().map_or([0.0; 3], |sides| ends.map(|pass| sides.offset(network, pass))),
                 block: ends.map(|p| network.pass_node[p.index()].0),
                 slot: ends.map(|p| coordinates.slot(p) as u32),
             }
@@ -118,7 +146,12 @@ impl Compression {
             let [front, back] = [0, 1].map(|k| of(network.stack(crossing.node)[k]).direction(&network.position));
             side[node] = Some(front.cross(back).dot(network.front[node]).signum());
         }
-        let mut compression = Self { strands, contact_of: vec![None; network.pass_count()], ..Self::default() };
+        let normals = sides.as_ref().map(|sides| Normals {
+            around: (0..network.node_count()).map(|node| sides.around(node).map(|c| c.map(|n| n as u32))).collect(),
+            softness: sides.softness(),
+        });
+        let mut compression =
+            Self { strands, normals, contact_of: vec![None; network.pass_count()], ..Self::default() };
         let mut deeper = Vec::new();
         for node in 0..network.node_count() {
             let stack: Vec<PassId> = network.live_stack(NodeId::new(node)).collect();
@@ -183,11 +216,11 @@ impl Compression {
         let (pairs, mut stacked) = out.split_at_mut(self.contacts.len());
         for stack in &self.stacks {
             let (own, rest) = stacked.split_at_mut(stack.count - 1);
-            stack.press(q, &self.strands, own);
+            stack.press(q, self, own);
             stacked = rest;
         }
         pairs.par_iter_mut().with_min_len(2048).zip(&self.contacts).for_each(|(lambda, contact)| {
-            let [a, b] = contact.yarns.map(|yarn| yarn.pull(q, &self.strands));
+            let [a, b] = contact.yarns.map(|yarn| yarn.pull(q, self));
             let mut across = across_both(sub(a.force, b.force), a.along, b.along);
             if let Some(side) = contact.side {
                 let normal = cross(a.along, b.along);
@@ -215,8 +248,8 @@ fn strand(yarn: &YarnCard, role: YarnRole, card: &FabricCard) -> Strand {
 }
 
 impl Stack {
-    fn press(&self, q: &[f64], strands: &[Strand], lambda: &mut [f64]) {
-        let pulls = self.yarns.map(|yarn| yarn.pull(q, strands));
+    fn press(&self, q: &[f64], compression: &Compression, lambda: &mut [f64]) {
+        let pulls = self.yarns.map(|yarn| yarn.pull(q, compression));
         let (child, parents) = (pulls[0], &pulls[1..self.count]);
         let parents_pull = parents.iter().fold([0.0; 3], |sum, pull| add(sum, pull.force));
         // The parents run side by side, one way or the other.
@@ -284,14 +317,21 @@ struct Pull {
 }
 
 impl Neighbours {
-    fn pull(&self, q: &[f64], strands: &[Strand]) -> Pull {
-        let strand = &strands[usize::from(self.strand)];
+    fn pull(&self, q: &[f64], compression: &Compression) -> Pull {
+        let strand = &compression.strands[usize::from(self.strand)];
         let mut pull = Pull { force: [0.0; 3], along: [0.0; 3], crimp: 0.0 };
-        let here = self.block[1] as usize * BLOCK;
+        let place = |k: usize| {
+            let node = self.block[k] as usize;
+            let x = point(q, node);
+            match &compression.normals {
+                Some(normals) => add(x, scale(normals.of(q, node), self.offset[k])),
+                None => x,
+            }
+        };
+        let here = place(1);
         for end in [0, 2] {
-            let there = self.block[end] as usize * BLOCK;
             let rest = (q[self.slot[end] as usize] - q[self.slot[1] as usize]).abs();
-            let d: [f64; 3] = std::array::from_fn(|k| q[there + k] - q[here + k]);
+            let d = sub(place(end), here);
             let length = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
             if length > 0.0 && rest > 0.0 {
                 let tension = strand.stiffness[usize::from(self.chain[end / 2])] * (length / rest - 1.0);
@@ -346,11 +386,11 @@ mod tests {
             q[5 * block..5 * block + 3].copy_from_slice(&x);
             q[5 * block + 3] = u;
         }
-        let yarn =
-            Neighbours { block: [1, 0, 2], slot: [8, 3, 13], chain: [false; 2], interlaces: [false; 2], strand: 0 };
+        let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13], ..Neighbours::default() };
         // The other yarn pulls the node back with the opposite of the first one's resultant, as in equilibrium.
         let strands = vec![Strand { stiffness: [1.0; 2], crimp_height: 0.0 }];
-        let own = yarn.pull(&q, &strands);
+        let mut compression = Compression { strands, ..Compression::default() };
+        let own = yarn.pull(&q, &compression);
         let f = across_both(own.force, own.along, [0.0; 3]);
         let mut out = Vec::new();
         let pull = (f[0] * f[0] + f[1] * f[1]).sqrt();
@@ -361,11 +401,32 @@ mod tests {
             q[5 * block + 2] = z;
         }
         (q[18], q[23]) = (-1.0, 1.0);
-        let holder =
-            Neighbours { block: [3, 0, 4], slot: [18, 4, 23], chain: [false; 2], interlaces: [false; 2], strand: 0 };
-        let contacts = vec![Contact { yarns: [yarn, holder], side: None }];
-        Compression { strands, contacts, ..Compression::default() }.evaluate(&q, &mut out);
+        let holder = Neighbours { block: [3, 0, 4], slot: [18, 4, 23], ..Neighbours::default() };
+        compression.contacts = vec![Contact { yarns: [yarn, holder], side: None }];
+        compression.evaluate(&q, &mut out);
         out[0]
+    }
+
+    #[test]
+    fn a_yarn_beside_its_node_pulls_from_where_it_lies() {
+        // A straight yarn from −1 over 0 to 1, in front of its node by a half: from the triangle's z-axis both sides pull it back.
+        let mut q = vec![0.0; 30];
+        for (block, [x, y]) in [(1, [-1.0, 0.0]), (2, [1.0, 0.0]), (3, [1.0, 0.0]), (4, [0.0, 1.0]), (5, [-1.0, -1.0])]
+        {
+            (q[5 * block], q[5 * block + 1]) = (x, y);
+        }
+        (q[8], q[13]) = (-1.0, 1.0);
+        let yarn = Neighbours { block: [1, 0, 2], slot: [8, 3, 13], offset: [0.0, 0.5, 0.0], ..Neighbours::default() };
+        let around = vec![Some([3, 4, 5]), None, None, None, None, None];
+        let compression = Compression {
+            strands: vec![Strand { stiffness: [2.0; 2], crimp_height: 0.0 }],
+            normals: Some(Normals { around, softness: 0.0 }),
+            ..Compression::default()
+        };
+        let length = 1.25f64.sqrt();
+        let force = yarn.pull(&q, &compression).force;
+        assert!(force[0].abs() < 1e-15 && force[1].abs() < 1e-15);
+        assert!((force[2] + 2.0 * 2.0 * (length - 1.0) * 0.5 / length).abs() < 1e-15, "{force:?}");
     }
 
     #[test]
@@ -383,6 +444,7 @@ mod tests {
             slot: [5 * block[0] + 3, own, 5 * block[2] + 3],
             chain: [false; 2],
             interlaces: [true; 2],
+            offset: [0.0; 3],
             strand,
         };
         let yarns = [yarn(0, [2, 0, 1], 3), yarn(1, [4, 0, 3], 4)];

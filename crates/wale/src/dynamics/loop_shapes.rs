@@ -26,7 +26,7 @@ pub fn lay_loop_shapes(network: &mut Network, tile: &Network, relaxed: &TileEqui
         .flat_map(|info| &info.nodes)
         .map(|node| {
             let [column, row] = tile.chart_place[node.index()];
-            coordinates.position_of(node.index(), &relaxed.unknowns) - DVec3::new(column * wale, row * course, 0.0)
+            coordinates.position_of(node.index(), &relaxed.coordinates) - DVec3::new(column * wale, row * course, 0.0)
         })
         .sum::<DVec3>()
         / count;
@@ -36,7 +36,7 @@ pub fn lay_loop_shapes(network: &mut Network, tile: &Network, relaxed: &TileEqui
         let Some((like, image)) = known.like(info) else { continue };
         let shift = DVec3::new(image[0] * period[0], image[1] * period[1], 0.0);
         for (node, like) in info.nodes.iter().zip(&like.nodes) {
-            flat[node.index()] = coordinates.position_of(like.index(), &relaxed.unknowns) + shift;
+            flat[node.index()] = coordinates.position_of(like.index(), &relaxed.coordinates) + shift;
         }
     }
     lay_arc_lengths(network, tile, relaxed, &coordinates, &flat);
@@ -83,7 +83,7 @@ fn lay_arc_lengths(
 ) {
     let likes = likes(network, tile);
     let tile_yarns = tile.pass_yarn();
-    let arc = |pass: PassId| relaxed.unknowns[coordinates.slot(pass)];
+    let arc = |pass: PassId| relaxed.coordinates[coordinates.slot(pass)];
     let rest_between = |a: PassId, b: PassId| -> Option<f64> {
         let yarn = tile_yarns[a.index()];
         let (_, closure) = tile.yarn_closure[yarn.index()]?;

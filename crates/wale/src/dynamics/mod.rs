@@ -15,5 +15,6 @@ mod surroundings;
 pub mod system;
 pub mod terms;
 pub mod tile_equilibrium;
+mod tile_system;
 
 pub use state::State;

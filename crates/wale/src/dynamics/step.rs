@@ -58,6 +58,11 @@ impl System {
         self.bends.update(q, |stencil, (bending, rate), local| {
             *rate = Rate::of_bend(local, &halfway(stencil, local), bending.stiffness, beta_over_h);
         });
+        self.thick_bends.update(q, |stencil, thick, local| {
+            let moved: [f64; 39] = std::array::from_fn(|i| local[i] + 0.5 * h * v[stencil[i] as usize]);
+            let (start, halfway) = (thick.points(local), thick.points(&moved));
+            thick.inner.1 = Rate::of_bend(&start, &halfway, thick.inner.0.stiffness, beta_over_h);
+        });
         self.wraps.update(q, |stencil, (wrapping, rate), local| {
             *rate = Rate::of_wrap(local, &halfway(stencil, local), wrapping, beta_over_h);
         });

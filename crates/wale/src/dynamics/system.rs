@@ -11,8 +11,8 @@ use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
 use crate::contact::{Compression, Nearby};
 use crate::energy::{
-    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, Load, ObstacleContact, ParallelSpring, Rate,
-    SelfContact, Shear, Spacing, StitchLength, Stretch, Wrapping,
+    AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, LegContact, Load, ObstacleContact, ParallelSpring,
+    Rate, SelfContact, Shear, Spacing, StitchLength, Stretch, Thick, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -39,6 +39,10 @@ pub struct System {
     /// Segments of yarn.
     pub(super) segments: Term<((Stretch, Gravity), Inertia), 8>,
     pub(super) bends: Term<(Bending, Rate), 12>,
+    /// Yarns with a thickness: their segments, bends and legs, in place of the stiffness of those above.
+    pub(super) thick_segments: Term<Thick<Stretch, 2>, 26>,
+    pub(super) thick_bends: Term<Thick<(Bending, Rate), 3>, 39>,
+    pub(super) legs: Term<Thick<LegContact, 4>, 52>,
     pub(super) wraps: Term<(Wrapping, Rate), 12>,
     pub(super) stitch_length: Term<StitchLength, 2>,
     pub(super) spacing: Term<Spacing, 2>,
@@ -66,7 +70,7 @@ pub struct System {
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 12;
+pub(super) const TERMS: usize = 15;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -86,9 +90,10 @@ struct ChunkWork {
 pub type Energies = [(&'static str, f64); KINDS.len()];
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 14] = [
+const KINDS: [&str; 15] = [
     Stretch::NAME,
     Bending::NAME,
+    LegContact::NAME,
     Wrapping::NAME,
     StitchLength::NAME,
     Spacing::NAME,
@@ -129,6 +134,7 @@ impl System {
             ((stretch, weightless), Inertia { density, factor: 0.0, direction: [0.0; 3], target: [0.0; 8] })
         });
         let bends = mechanics.bending.map(|bending| (bending, Rate::NONE));
+        let thick_bends = mechanics.thick.bending.map(|thick| thick.with((thick.inner, Rate::NONE)));
         let wraps = mechanics.wrapping.map(|wrapping| (wrapping, Rate::NONE));
         let compression = Compression::new(network, &yarns, &card, &coordinates);
         // Two yarns rub with the mean of what each is said to rub with against its like.
@@ -187,6 +193,9 @@ impl System {
             pattern: Arc::new(BlockPattern::from_pairs(0, [])),
             segments: Term::new(segments, &chunks),
             bends: Term::new(bends, &chunks),
+            thick_segments: Term::new(mechanics.thick.stretch, &chunks),
+            thick_bends: Term::new(thick_bends, &chunks),
+            legs: Term::new(mechanics.thick.legs, &chunks),
             wraps: Term::new(wraps, &chunks),
             stitch_length: Term::new(mechanics.stitch_length, &chunks),
             spacing: Term::new(mechanics.spacing, &chunks),
@@ -212,6 +221,9 @@ impl System {
         system.pattern = Arc::new(BlockPattern::from_pairs(system.coordinates.block_count(), pairs));
         system.segments.locate(&system.pattern);
         system.bends.locate(&system.pattern);
+        system.thick_segments.locate(&system.pattern);
+        system.thick_bends.locate(&system.pattern);
+        system.legs.locate(&system.pattern);
         system.wraps.locate(&system.pattern);
         system.stitch_length.locate(&system.pattern);
         system.spacing.locate(&system.pattern);
@@ -249,6 +261,9 @@ impl System {
         [
             &self.segments,
             &self.bends,
+            &self.thick_segments,
+            &self.thick_bends,
+            &self.legs,
             &self.wraps,
             &self.stitch_length,
             &self.spacing,
@@ -340,14 +355,18 @@ impl System {
     /// rest length \[m\].
     #[must_use]
     pub fn extremes(&self, q: &[f64]) -> (f64, f64) {
-        let of = |(stencil, &chained): (&[u32; 8], &bool)| {
-            let at = |k: usize| q[stencil[k] as usize];
-            let rest = at(7) - at(3);
-            let length = ((at(4) - at(0)).powi(2) + (at(5) - at(1)).powi(2) + (at(6) - at(2)).powi(2)).sqrt();
+        let thick = &self.thick_segments.set;
+        let of = |(index, &chained): (usize, &bool)| {
+            let ends = match thick.elements.get(index) {
+                Some(element) => element.points(&thick.local(index, q)),
+                None => self.segments.set.local(index, q),
+            };
+            let rest = ends[7] - ends[3];
+            let length = (0..3).map(|k| (ends[4 + k] - ends[k]).powi(2)).sum::<f64>().sqrt();
             let ratio = if chained { 1.0 } else { length / rest };
             (ratio, rest)
         };
-        let segments = self.segments.set.stencils.par_iter().zip(&self.chained).with_min_len(4096);
+        let segments = self.chained.par_iter().enumerate().with_min_len(4096);
         segments.map(of).reduce(|| (0.0, f64::INFINITY), |a, b| (a.0.max(b.0), a.1.min(b.1)))
     }
 

@@ -1,12 +1,11 @@
-//! Equilibrium of a periodic tile with both periods unknown, by direct Newton steps.
+//! Equilibrium of a periodic tile with both periods unknown, by Newton's method.
 
-use wale_numerics::dense::{DirectionKind, descent_direction};
+use rayon::prelude::*;
 
-use crate::energy::Foundation;
-use crate::fabric::coordinates::{BLOCK, dof};
-use crate::fabric::elements::{ElementSet, Elements};
-use crate::fabric::{Mechanics, TileCoordinates};
-use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
+use super::tile_system::TileSystem;
+use crate::fabric::TileCoordinates;
+use crate::fabric::coordinates::BLOCK;
+use crate::model::{KnitCard, Network, Yarns};
 
 /// How a tile is brought to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,8 +33,8 @@ impl Default for TileSettings {
 /// A tile at rest.
 #[derive(Clone, Debug)]
 pub struct TileEquilibrium {
-    /// Own slots, then the two periods \[m\].
-    pub unknowns: Vec<f64>,
+    /// Coordinates of the own slots, then the two periods \[m\].
+    pub coordinates: Vec<f64>,
     /// Period along the course, over the tile's columns: the relaxed wale spacing `W` \[m\].
     pub wale_spacing: f64,
     /// Period along the wale, over the tile's rows: the relaxed course spacing `C` \[m\].
@@ -61,190 +60,179 @@ pub fn relax_tile(
     card: &KnitCard,
     settings: &TileSettings,
 ) -> TileEquilibrium {
-    Problem::new(network, &yarns.into(), card, settings).solve(settings)
+    let start = disturbed(network, settings, card.loop_length);
+    relax_tile_from(network, yarns, card, settings, start)
 }
 
-struct Problem {
-    coordinates: TileCoordinates,
-    mechanics: Mechanics,
-    bed: Elements<Foundation, 1>,
-    /// Unknown of each row of the dense system.
-    rows: Vec<usize>,
-    /// Row of each unknown.
-    row_of: Vec<Option<usize>>,
+/// How much more the layout is disturbed at each start.
+const DISTURBED: [f64; 4] = [1.0, 5.0, 5.0, 10.0];
+
+/// Relaxes a periodic tile from several starts, that of lowest energy first: equilibria are not unique, and the lowest is the
+/// one that a swatch shaken long enough would find. Those that did not come to rest come last.
+#[must_use]
+pub fn relax_from_starts(
+    network: &Network,
+    yarns: impl Into<Yarns>,
+    card: &KnitCard,
+    settings: &TileSettings,
+    starts: usize,
+) -> Vec<TileEquilibrium> {
+    let yarns = yarns.into();
+    let run = |start: usize| {
+        let (seed, noise) = (settings.seed + start as u64, settings.noise * DISTURBED[start % DISTURBED.len()]);
+        relax_tile(network, &yarns, card, &TileSettings { seed, noise, ..*settings })
+    };
+    let mut found: Vec<TileEquilibrium> = (0..starts).into_par_iter().map(run).collect();
+    found.sort_by(|a, b| (!a.converged).cmp(&!b.converged).then(a.energy.total_cmp(&b.energy)));
+    found
+}
+
+/// Relaxes a periodic tile from given coordinates: own slots, then the two periods \[m\], as [`TileEquilibrium::coordinates`]
+/// of a tile of the same network and another card has them.
+///
+/// # Panics
+/// If there are not as many as the tile has, or the tile is too large for memory.
+#[must_use]
+pub fn relax_tile_from(
+    network: &Network,
+    yarns: impl Into<Yarns>,
+    card: &KnitCard,
+    settings: &TileSettings,
+    start: Vec<f64>,
+) -> TileEquilibrium {
+    let yarns = yarns.into();
+    let length = card.loop_length;
+    let force = yarns.first().bending_stiffness / (length * length);
+    let mut system =
+        TileSystem::new(network, &yarns, card, settings.bed * force / length).expect("a tile fits in memory");
+    assert_eq!(start.len(), system.coordinates.unknown_len());
+    let unknowns = system.coordinates.unknowns(start);
+    let mut descent = Descent {
+        system: &mut system,
+        unknowns,
+        force,
+        length,
+        settings: *settings,
+        shift: FIRST_SHIFT,
+        convexity: 1.0,
+        energy: f64::NAN,
+        iterations: 0,
+        residual: f64::INFINITY,
+    };
+    descent.run();
+    let Descent { unknowns, energy, iterations, residual, .. } = descent;
+    let n = system.coordinates.own().len();
+    let mut coordinates = Vec::new();
+    system.coordinates.place(&unknowns, &mut coordinates);
+    coordinates.truncate(n);
+    coordinates.extend(&unknowns[n..]);
+    TileEquilibrium {
+        coordinates,
+        wale_spacing: unknowns[n] / f64::from(network.chart_size[1]),
+        course_spacing: unknowns[n + 1] / f64::from(network.chart_size[0]),
+        energy: energy / network.loops.len() as f64,
+        iterations,
+        residual,
+        converged: residual <= settings.tolerance,
+    }
+}
+
+/// The layout, disturbed a little.
+fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64> {
+    let mut start = TileCoordinates::new(network).initial(network);
+    let mut random = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    for node in 0..network.node_count() {
+        for k in 0..3 {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            let unit = (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+            start[BLOCK * node + k] += settings.noise * length * unit;
+        }
+    }
+    start
+}
+
+/// Newton's method within a region that it trusts: where the exact second derivatives are not positive definite, ones nearer to
+/// convex take their place; and a multiple of the identity, added to them, grows where they do not tell what the energy does and
+/// vanishes where they do.
+struct Descent<'a> {
+    system: &'a mut TileSystem,
     unknowns: Vec<f64>,
-    world: Vec<f64>,
-    loop_count: f64,
-    columns: f64,
-    chart_rows: f64,
-    /// Force unit `k_b/ℓ²` \[N\].
+    /// Force unit `k_b/ℓ²` \[N\] and length unit `ℓ` \[m\].
     force: f64,
-    /// Largest move of a coordinate in one step \[m\].
-    longest_move: f64,
+    length: f64,
+    settings: TileSettings,
+    /// Multiple of the identity, in `k_b/ℓ³`.
+    shift: f64,
+    convexity: f64,
+    energy: f64,
+    iterations: usize,
+    residual: f64,
 }
 
-impl Problem {
-    fn new(network: &Network, yarns: &Yarns, card: &KnitCard, settings: &TileSettings) -> Self {
-        let mut coordinates = TileCoordinates::new(network);
-        let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
-        let length = card.loop_length;
-        let force = yarns.first().bending_stiffness / (length * length);
-        let mut bed = Elements::default();
-        if settings.bed > 0.0 {
-            let stiffness = settings.bed * force / length;
-            for node in 0..network.node_count() {
-                bed.push(Foundation { stiffness, place: 0.0 }, [dof(BLOCK * node + 2)]);
-            }
-        }
-        let mut held = vec![false; coordinates.unknown_len()];
-        for (held, free) in held.iter_mut().zip(coordinates.own().free()) {
-            *held = !free;
-        }
-        held[0] = true;
-        held[1] = true;
-        held[2] = settings.bed <= 0.0;
-        for y in 0..network.yarn_count() {
-            let first = PassId::new(network.yarn_passes(YarnId::new(y)).start);
-            held[coordinates.own().slot(first)] = true;
-        }
-        let rows: Vec<usize> = (0..held.len()).filter(|&i| !held[i]).collect();
-        let mut row_of = vec![None; held.len()];
-        for (row, &unknown) in rows.iter().enumerate() {
-            row_of[unknown] = Some(row);
-        }
-        let mut unknowns = coordinates.initial(network);
-        let mut random = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-        for node in 0..network.node_count() {
-            for k in 0..3 {
-                random ^= random << 13;
-                random ^= random >> 7;
-                random ^= random << 17;
-                let unit = (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-                unknowns[BLOCK * node + k] += settings.noise * length * unit;
-            }
-        }
-        Self {
-            coordinates,
-            mechanics,
-            bed,
-            rows,
-            row_of,
-            unknowns,
-            world: Vec::new(),
-            loop_count: network.loops.len() as f64,
-            columns: f64::from(network.chart_size[1]),
-            chart_rows: f64::from(network.chart_size[0]),
-            force,
-            longest_move: 0.05 * length,
-        }
-    }
+/// First multiple of the identity, in `k_b/ℓ³`, and the least that is not none.
+const FIRST_SHIFT: f64 = 100.0;
+const LEAST_SHIFT: f64 = 1e-4;
+/// Largest: a step so short that nothing is gained by another.
+const LARGEST_SHIFT: f64 = 1e12;
+/// Least convexity that is not none, and the first after none.
+const LEAST_CONVEXITY: f64 = 0.02;
+const SOME_CONVEXITY: f64 = 0.125;
+/// Largest move of a coordinate in a step, in loop lengths.
+const LONGEST_MOVE: f64 = 0.05;
 
-    fn sets(&self) -> Vec<&dyn ElementSet> {
-        let mut sets = self.mechanics.sets().to_vec();
-        sets.push(&self.bed);
-        sets
-    }
-
-    fn energy(&self, unknowns: &[f64], world: &mut Vec<f64>) -> f64 {
-        self.coordinates.place(unknowns, world);
-        self.sets().iter().map(|set| set.total(world)).sum()
-    }
-
-    /// Energy, gradient and full Hessian by the rows' unknowns.
-    fn linearise(&self, gradient: &mut [f64], hessian: &mut [f64]) -> f64 {
-        let n = self.rows.len();
-        gradient.fill(0.0);
-        hessian.fill(0.0);
-        let mut energy = 0.0;
-        let mut targets: Vec<(usize, usize, f64)> = Vec::new();
-        for set in self.sets() {
-            energy += set.visit(&self.world, &mut |stencil, slope, curvature| {
-                targets.clear();
-                for (i, &world) in stencil.iter().enumerate() {
-                    for (unknown, factor) in self.coordinates.sources(world) {
-                        if factor != 0.0
-                            && let Some(row) = self.row_of[unknown]
-                        {
-                            gradient[row] += factor * slope[i];
-                            targets.push((i, row, factor));
-                        }
-                    }
-                }
-                for &(i, row, a) in &targets {
-                    for &(j, column, b) in &targets {
-                        hessian[row * n + column] += a * b * curvature(i, j);
-                    }
-                }
-            });
-        }
-        energy
-    }
-
-    /// The longest step along `direction` that no segment's rest length reaches zero in.
-    fn longest_step(&self, direction: &[f64]) -> f64 {
-        let change = |world: u32| -> f64 {
-            self.coordinates.sources(world).iter().map(|&(unknown, factor)| factor * direction[unknown]).sum()
-        };
-        let mut longest: f64 = 1.0;
-        for stencil in &self.mechanics.stretch.stencils {
-            let rest = self.world[stencil[7] as usize] - self.world[stencil[3] as usize];
-            let rate = change(stencil[7]) - change(stencil[3]);
-            if rate < 0.0 {
-                longest = longest.min(0.9 * rest / -rate);
-            }
-        }
-        let largest = direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
-        longest.min(self.longest_move / largest.max(f64::MIN_POSITIVE))
-    }
-
-    fn solve(mut self, settings: &TileSettings) -> TileEquilibrium {
-        let n = self.rows.len();
-        let (mut gradient, mut hessian) = (vec![0.0; n], vec![0.0; n * n]);
-        let mut scratch = Vec::new();
-        let mut energy = f64::NAN;
-        let (mut iterations, mut residual) = (0, f64::INFINITY);
-        while iterations <= settings.max_iterations {
-            self.coordinates.place(&self.unknowns, &mut self.world);
-            energy = self.linearise(&mut gradient, &mut hessian);
-            residual = gradient.iter().fold(0.0f64, |m, g| m.max(g.abs())) / self.force;
-            if residual <= settings.tolerance || iterations == settings.max_iterations {
+impl Descent<'_> {
+    fn run(&mut self) {
+        while self.iterations <= self.settings.max_iterations {
+            self.linearise();
+            if self.residual <= self.settings.tolerance || self.iterations == self.settings.max_iterations {
                 break;
             }
-            let Some((step, kind)) = descent_direction(&hessian, &gradient) else { break };
-            let mut direction = vec![0.0; self.unknowns.len()];
-            for (row, &unknown) in self.rows.iter().enumerate() {
-                direction[unknown] = step[row];
-            }
-            let slope: f64 = step.iter().zip(&gradient).map(|(d, g)| d * g).sum();
-            let mut length = self.longest_step(&direction);
-            let full = length >= 1.0 && kind == DirectionKind::Newton;
-            let mut accepted = false;
-            for _ in 0..40 {
-                let trial: Vec<f64> = self.unknowns.iter().zip(&direction).map(|(u, d)| u + length * d).collect();
-                let new = self.energy(&trial, &mut scratch);
-                // Close to rest the energy no longer resolves the step: trust Newton there.
-                let noise = 1e-14 * energy.abs();
-                if new <= energy + 1e-4 * length * slope + noise || (full && residual < 1e-5) {
-                    self.unknowns = trial;
-                    accepted = true;
-                    break;
-                }
-                length *= 0.5;
-            }
-            iterations += 1;
-            if !accepted {
+            if !self.advance() {
                 break;
             }
+            self.iterations += 1;
         }
-        let n = self.unknowns.len();
-        TileEquilibrium {
-            wale_spacing: self.unknowns[n - 2] / self.columns,
-            course_spacing: self.unknowns[n - 1] / self.chart_rows,
-            energy: energy / self.loop_count,
-            iterations,
-            residual,
-            converged: residual <= settings.tolerance,
-            unknowns: self.unknowns,
+    }
+
+    fn linearise(&mut self) {
+        self.energy = self.system.linearise(&self.unknowns, self.convexity);
+        self.residual = self.system.largest_force() / self.force;
+    }
+
+    /// A step that lowers the energy about as much as the second derivatives say; whether there was one.
+    fn advance(&mut self) -> bool {
+        while self.shift < LARGEST_SHIFT {
+            let used = if self.shift < LEAST_SHIFT { 0.0 } else { self.shift };
+            let Ok(found) = self.system.step(used * self.force / self.length) else { return false };
+            let Some(step) = found else {
+                if self.convexity < 1.0 {
+                    self.convexity = (2.0 * self.convexity).clamp(SOME_CONVEXITY, 1.0);
+                    self.linearise();
+                } else {
+                    self.shift = (4.0 * self.shift).max(1.0);
+                }
+                continue;
+            };
+            let part = self.system.longest_step(&self.unknowns, &step.direction, LONGEST_MOVE * self.length);
+            let trial: Vec<f64> = self.unknowns.iter().zip(&step.direction).map(|(u, d)| u + part * d).collect();
+            let predicted = -part * step.slope - 0.5 * part * part * step.curvature;
+            let gained = self.energy - self.system.energy(&trial);
+            // Close to rest the energy no longer resolves the step: trust Newton there.
+            let resolved = predicted > 1e-12 * self.energy.abs();
+            let trust = if resolved { gained / predicted } else { 1.0 };
+            if trust > 0.75 && part > 0.9 {
+                self.shift *= 0.2;
+                self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
+            } else if trust.is_nan() || trust < 0.25 {
+                self.shift = (4.0 * self.shift).max(LEAST_SHIFT);
+            }
+            if trust > 1e-3 {
+                self.unknowns = trial;
+                return true;
+            }
         }
+        false
     }
 }

@@ -62,8 +62,11 @@ pub trait ElementSet {
     fn name(&self) -> &'static str;
     /// Sum of the energies \[J\].
     fn total(&self, q: &[f64]) -> f64;
-    /// Calls `visit(stencil, gradient, exact Hessian)` for every element, in order, and returns the energy \[J\].
-    fn visit(&self, q: &[f64], visit: &mut Visit<'_>) -> f64;
+    /// Calls `visit` with the stencil of every element, in order.
+    fn stencils(&self, visit: &mut dyn FnMut(&[Dof]));
+    /// Calls `visit(stencil, gradient, Hessian)` for every element, in order, and returns the energy \[J\]; the Hessian is
+    /// between the exact one (`convexity = 0`) and a positive semi-definite one (`convexity = 1`).
+    fn visit(&self, q: &[f64], convexity: f64, visit: &mut Visit<'_>) -> f64;
     /// Calls `visit(stencil, gradient)` for every element and returns the energy \[J\].
     fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64;
 }
@@ -75,11 +78,14 @@ impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
     fn total(&self, q: &[f64]) -> f64 {
         self.energy(q)
     }
-    fn visit(&self, q: &[f64], visit: &mut Visit<'_>) -> f64 {
+    fn stencils(&self, visit: &mut dyn FnMut(&[Dof])) {
+        self.stencils.iter().for_each(|stencil| visit(stencil));
+    }
+    fn visit(&self, q: &[f64], convexity: f64, visit: &mut Visit<'_>) -> f64 {
         let mut energy = 0.0;
         for (index, element) in self.elements.iter().enumerate() {
-            let q = self.local(index, q);
-            let local: Local<N> = element.exact(&q);
+            let mut local = Local::zero();
+            element.add_blended(&self.local(index, q), convexity, &mut local);
             energy += local.energy;
             visit(&self.stencils[index], &local.gradient, &|i, j| local.hessian[i][j]);
         }

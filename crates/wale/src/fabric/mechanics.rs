@@ -2,6 +2,7 @@
 
 use super::coordinates::{CoordinateMap, Dof};
 use super::elements::{ElementSet, Elements};
+use super::thickness::{ThickElements, crosses};
 use crate::energy::{Bending, Shear, Spacing, StitchLength, Stretch, Wrapping};
 use crate::model::{
     ContactPair, Crossing, FabricCard, KnitCard, Network, NodeId, PassId, PassKind, SegmentKind, StitchContact,
@@ -17,6 +18,10 @@ pub struct Mechanics {
     pub segment_after: Vec<PassId>,
     /// Bending at passes, in yarn order.
     pub bending: Elements<Bending, 12>,
+    /// The pass of each bend.
+    pub bend_at: Vec<PassId>,
+    /// Stretch and bending of yarns with a thickness, in place of those above.
+    pub thick: ThickElements,
     /// Wrapping of stitch contacts.
     pub wrapping: Elements<Wrapping, 12>,
     /// Yarn length of stitch contacts.
@@ -48,13 +53,27 @@ impl Mechanics {
             FabricCard::Knit(card) => mechanics.add_contacts(network, card, map),
             FabricCard::Woven(card) => mechanics.add_crossings(network, card, map),
         }
+        if let Some((card, thickness)) = card.knit().and_then(|card| Some((card, card.thickness?))) {
+            mechanics.thick = ThickElements::take(network, card, &thickness, &mut mechanics, map);
+        }
         mechanics
     }
 
     /// All kinds, for whoever treats them alike.
     #[must_use]
-    pub fn sets(&self) -> [&dyn ElementSet; 6] {
-        [&self.stretch, &self.bending, &self.wrapping, &self.stitch_length, &self.spacing, &self.shear]
+    pub fn sets(&self) -> [&dyn ElementSet; 9] {
+        let ThickElements { stretch, bending, legs } = &self.thick;
+        [
+            &self.stretch,
+            &self.bending,
+            stretch,
+            bending,
+            legs,
+            &self.wrapping,
+            &self.stitch_length,
+            &self.spacing,
+            &self.shear,
+        ]
     }
 
     /// The bend at a pass and the segment after it.
@@ -92,6 +111,7 @@ impl Mechanics {
             stencil[4..8].copy_from_slice(&here);
             stencil[8..].copy_from_slice(&there);
             self.bending.push(Bending { stiffness: material.bending_stiffness, rest_angle }, stencil);
+            self.bend_at.push(pass);
         }
         // A loose end may be pulled up to its last contact, and out of it.
         let end = previous.is_none() || network.neighbour(yarn, next.pass, 1).is_none();
@@ -103,7 +123,7 @@ impl Mechanics {
         // Half of what lies there at first, where the layout is tighter than the card.
         let half = 0.5 * (at(next.pass) - at(pass)).abs();
         let distance = match card {
-            FabricCard::Knit(card) => match self.knit_spacing(network, pass, card, half, between) {
+            FabricCard::Knit(card) => match self.knit_spacing(network, [pass, next.pass], card, half, between) {
                 Some(distance) => distance,
                 None => return,
             },
@@ -125,23 +145,31 @@ impl Mechanics {
     fn knit_spacing(
         &mut self,
         network: &Network,
-        pass: PassId,
+        [pass, next]: [PassId; 2],
         card: &KnitCard,
         half: f64,
         between: [Dof; 2],
     ) -> Option<f64> {
         // Loops that share a strand with others lie as much closer.
         let share = f64::from(network.segment_share[pass.index()]);
-        Some(match network.segment_kind[pass.index()] {
-            SegmentKind::Stitch => {
-                let rest_length = card.stitch_length / share;
-                self.stitch_length.push(StitchLength { stiffness: card.length_stiffness, rest_length }, between);
-                return None;
-            }
-            SegmentKind::Leg => card.spacing_leg,
-            SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker / share,
-            _ => card.spacing_head_sinker.min(half),
-        })
+        let ratio = match card.thickness {
+            Some(thickness) if crosses(network, pass, next) => thickness.crossing_spacing,
+            _ => 1.0,
+        };
+        Some(
+            ratio
+                * match network.segment_kind[pass.index()] {
+                    SegmentKind::Stitch => {
+                        let rest_length = card.stitch_length / share;
+                        self.stitch_length
+                            .push(StitchLength { stiffness: card.length_stiffness, rest_length }, between);
+                        return None;
+                    }
+                    SegmentKind::Leg => card.spacing_leg,
+                    SegmentKind::Head | SegmentKind::Sinker => card.spacing_head_sinker / share,
+                    _ => card.spacing_head_sinker.min(half),
+                },
+        )
     }
 
     fn add_contacts(&mut self, network: &Network, card: &KnitCard, map: &mut dyn CoordinateMap) {

@@ -3,6 +3,8 @@
 pub mod coordinates;
 pub mod elements;
 pub mod mechanics;
+pub mod sides;
+pub mod thickness;
 pub mod tile;
 
 pub use coordinates::{CoordinateMap, Coordinates, Dof};

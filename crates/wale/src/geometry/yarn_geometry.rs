@@ -454,6 +454,7 @@ mod tests {
             spacing_stiffness: 0.0,
             spacing_leg: 0.0,
             spacing_head_sinker: 0.0,
+            thickness: None,
             anchor_stiffness: 0.0,
             residual_compression: 0.0,
         };

@@ -134,6 +134,7 @@ mod tests {
             spacing_stiffness: 0.01,
             spacing_leg: 1e-3,
             spacing_head_sinker: 1e-3,
+            thickness: None,
             anchor_stiffness: 10.0,
             residual_compression: 1e-5,
         };

@@ -36,10 +36,39 @@ pub struct KnitCard {
     pub spacing_leg: f64,
     /// Spacing distance of heads and sinkers `d` \[m\].
     pub spacing_head_sinker: f64,
+    /// How thick the yarns are where they touch; none for yarns that meet in one point.
+    pub thickness: Option<Thickness>,
     /// Stiffness of the friction anchors `k_f` \[N/m\].
     pub anchor_stiffness: f64,
     /// Smallest compression of a contact `λ_min` \[N\].
     pub residual_compression: f64,
+}
+
+/// Yarns that lie beside each other at their contacts instead of meeting in one point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thickness {
+    /// Distance of the centre lines of two yarns at a contact \[m\].
+    pub contact_distance: f64,
+    /// Distance of the middles of two neighbouring legs below which they push each other away \[m\].
+    pub leg_distance: f64,
+    /// Stiffness of their push \[N\].
+    pub leg_stiffness: f64,
+    /// Spacing distance of a strand that goes from one face of the fabric to the other, over that of one that stays on a
+    /// face \[–\]: contacts on opposite sides of a yarn nest.
+    pub crossing_spacing: f64,
+}
+
+impl Thickness {
+    /// The same shape of another size and stiffness: lengths times `length`, forces times `force`.
+    #[must_use]
+    pub fn scaled(&self, length: f64, force: f64) -> Self {
+        Self {
+            contact_distance: length * self.contact_distance,
+            leg_distance: length * self.leg_distance,
+            leg_stiffness: force * self.leg_stiffness,
+            crossing_spacing: self.crossing_spacing,
+        }
+    }
 }
 
 /// The shape of a relaxed loop in proportion to its length, and the stiffnesses that go with it: what a fabric card
@@ -66,6 +95,8 @@ pub struct LoopProportions {
     pub spacing_leg: f64,
     /// Spacing distance of heads and sinkers `d/ℓ` \[–\].
     pub spacing_head_sinker: f64,
+    /// Thickness of the yarns at their contacts, in loop lengths and in `k_b/ℓ²`.
+    pub thickness: Option<Thickness>,
     /// Extra loop length per knit–purl change within a row \[–\].
     pub transition_length: f64,
     /// Wale spacing of relaxed stockinette `W/ℓ` \[–\].
@@ -87,6 +118,7 @@ impl Default for LoopProportions {
             bend_angle_leg: 1.112,
             spacing_leg: 0.2113,
             spacing_head_sinker: 0.0680,
+            thickness: None,
             transition_length: 0.085,
             wale_spacing: 0.2993,
             course_spacing: 0.2578,
@@ -98,6 +130,31 @@ impl Default for LoopProportions {
 }
 
 impl LoopProportions {
+    /// Loops whose yarns lie beside each other at their contacts, fitted to measured swatches of eleven patterns.
+    #[must_use]
+    pub fn thick() -> Self {
+        Self {
+            stitch_length: 0.0979,
+            wrapping: 1.5166,
+            wrapping_angle_course: 0.8185,
+            wrapping_angle_leg: 0.5408,
+            bend_angle_foot_head: 0.4403,
+            bend_angle_leg: 1.2519,
+            spacing_leg: 0.3156,
+            spacing_head_sinker: 0.1055,
+            thickness: Some(Thickness {
+                contact_distance: 0.0537,
+                leg_distance: 0.2477,
+                leg_stiffness: 184.3,
+                crossing_spacing: 0.8030,
+            }),
+            transition_length: 0.085,
+            wale_spacing: 0.308,
+            course_spacing: 0.242,
+            path_ratio: 0.762,
+        }
+    }
+
     /// Spacing stiffness in proportion to stretch stiffness \[–\]; relaxed sizes hardly depend on it.
     const SPACING_TO_STRETCH: f64 = 1.0 / 15.0;
     /// Anchor stiffness `k_f W/k_s` \[–\].
@@ -127,6 +184,7 @@ impl LoopProportions {
             spacing_stiffness: Self::SPACING_TO_STRETCH * yarn.stretch_stiffness,
             spacing_leg: self.spacing_leg * loop_length,
             spacing_head_sinker: self.spacing_head_sinker * loop_length,
+            thickness: self.thickness.map(|thickness| thickness.scaled(loop_length, force)),
             anchor_stiffness: Self::ANCHOR_TO_STRETCH * yarn.stretch_stiffness / wale_spacing,
             residual_compression: Self::RESIDUAL_COMPRESSION * force,
         }

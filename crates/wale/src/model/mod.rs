@@ -14,7 +14,7 @@ pub mod yarn_card;
 pub use card::FabricCard;
 pub use frame::Frame;
 pub use ids::{NodeId, PassId, StitchId, YarnId};
-pub use knit_card::{KnitCard, LoopProportions};
+pub use knit_card::{KnitCard, LoopProportions, Thickness};
 pub use motion::{Motion, Pose};
 pub use network::{
     ContactPair, Crossing, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair, YarnRole,

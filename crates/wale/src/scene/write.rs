@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::{DQuat, DVec3};
 
 use super::schema::{
-    Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, FabricText, FirstRow, Gravity, GripText,
-    KeyText, MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
+    Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, ContactModel, FabricText, FirstRow, Gravity,
+    GripText, KeyText, MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
     SelvedgeText, SimulationText, SphereText, WeaveText, WhichEnd, Worked, YarnEndText, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
@@ -100,6 +100,11 @@ fn fabric(scene: &Scene) -> Written<FabricText> {
             length_stiffness: some(card.length_stiffness)?,
             spacing_leg: some(card.spacing_leg)?,
             spacing_head_sinker: some(card.spacing_head_sinker)?,
+            contacts: card.thickness.map(|_| ContactModel::Thick),
+            contact_distance: card.thickness.map(|thickness| of(thickness.contact_distance)).transpose()?,
+            leg_distance: card.thickness.map(|thickness| of(thickness.leg_distance)).transpose()?,
+            leg_stiffness: card.thickness.map(|thickness| of(thickness.leg_stiffness)).transpose()?,
+            crossing_spacing: card.thickness.map(|thickness| of(thickness.crossing_spacing)).transpose()?,
             chart: Some(chart(scene)),
             ..common
         }),

@@ -1,15 +1,15 @@
 //! What a simulation starts from: the network of a chart, with the loop shapes of a relaxed repeat if wanted.
 
 use crate::dynamics::loop_shapes::lay_loop_shapes;
-use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_tile};
+use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from_starts};
 use crate::model::{FabricCard, KnitCard, Network, Yarns};
 use crate::pattern::{Chart, Structure, knit};
 
 /// Most loops of a repeat that is relaxed for its loop shapes.
 pub const MOST_TILE_LOOPS: usize = 100;
 /// Starts from which a repeat is relaxed; the one of lowest energy is taken, because equilibria are not unique.
-const STARTS: u64 = 3;
-/// Loops of a repeat above which one start must do: its system is solved densely, at the cube of its size.
+const STARTS: usize = 3;
+/// Loops of a repeat above which one start must do: it takes seconds, and its patches average over what starts differ in.
 const MANY_LOOPS: usize = 40;
 
 /// A fabric before anything happens to it.
@@ -59,14 +59,6 @@ impl Start {
 
 /// Relaxes a repeat from several starts and returns the one of lowest energy.
 fn relax_repeat(tile: &Network, yarns: &Yarns, card: &KnitCard) -> TileEquilibrium {
-    let run = |seed| relax_tile(tile, yarns, card, &TileSettings { seed, ..TileSettings::default() });
-    let mut best = run(1);
     let starts = if tile.loops.len() > MANY_LOOPS { 1 } else { STARTS };
-    for seed in 2..=starts {
-        let other = run(seed);
-        if (other.converged, -other.energy) > (best.converged, -best.energy) {
-            best = other;
-        }
-    }
-    best
+    relax_from_starts(tile, yarns, card, &TileSettings::default(), starts).swap_remove(0)
 }

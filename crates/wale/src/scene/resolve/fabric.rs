@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use super::{rotation, si, vector};
 use crate::model::{KnitCard, LoopProportions, Placement, YarnCard};
 use crate::scene::error::Complaint;
-use crate::scene::schema::{FabricText, PaperTable1, Stance, YarnText};
+use crate::scene::schema::{ContactModel, FabricText, PaperTable1, Stance, YarnText};
 use crate::scene::units::{Bounds, Dimension, Quantity};
 
 /// Loop lengths that knitted fabrics have \[m\].
@@ -15,7 +15,8 @@ const LOOP_LENGTH: std::ops::RangeInclusive<f64> = 1e-4..=2.0;
 
 /// The card; `base` stands behind what the scene says.
 pub(super) fn resolve(said: &FabricText, base: &FabricText, yarn: &YarnCard) -> Result<KnitCard, Complaint> {
-    let mut proportions = LoopProportions::default();
+    let thick = said.contacts.or(base.contacts) == Some(ContactModel::Thick);
+    let mut proportions = if thick { LoopProportions::thick() } else { LoopProportions::default() };
     if let Some(ratio) = si(said.path_ratio.or(base.path_ratio)) {
         proportions.path_ratio = ratio;
     }
@@ -96,6 +97,12 @@ fn overridden(mut card: KnitCard, text: &FabricText) -> KnitCard {
     set(&mut card.spacing_stiffness, text.spacing_stiffness);
     set(&mut card.spacing_leg, text.spacing_leg);
     set(&mut card.spacing_head_sinker, text.spacing_head_sinker);
+    if let Some(thickness) = &mut card.thickness {
+        set(&mut thickness.contact_distance, text.contact_distance);
+        set(&mut thickness.leg_distance, text.leg_distance);
+        set(&mut thickness.leg_stiffness, text.leg_stiffness);
+        set(&mut thickness.crossing_spacing, text.crossing_spacing);
+    }
     set(&mut card.anchor_stiffness, text.anchor_stiffness);
     set(&mut card.residual_compression, text.residual_compression);
     card
@@ -124,6 +131,27 @@ fn check(card: &KnitCard, said: &FabricText) -> Result<(), Complaint> {
                 .why("rest angles are below 180 degrees")
                 .mend("a bare number is in radians; write degrees as \"90 deg\""));
         }
+    }
+    let of_thick = [
+        ("contact_distance", said.contact_distance.is_some()),
+        ("leg_distance", said.leg_distance.is_some()),
+        ("leg_stiffness", said.leg_stiffness.is_some()),
+        ("crossing_spacing", said.crossing_spacing.is_some()),
+    ];
+    match (card.thickness, of_thick.iter().find(|(_, given)| *given)) {
+        (None, Some((key, _))) => {
+            return Err(Complaint::new(format!("fabric.{key}"), format!("{key} of contacts in one point"))
+                .why("only thick contacts have it")
+                .mend("add contacts = \"thick\" to [fabric]"));
+        }
+        (Some(thickness), _) if thickness.contact_distance > card.stitch_length => {
+            let what = format!("a contact_distance of {:.3e} m", thickness.contact_distance);
+            return Err(Complaint::new("fabric.contact_distance", what).why(format!(
+                "yarns that are wrapped about each other over {:.3e} m lie nearer to each other than that",
+                card.stitch_length
+            )));
+        }
+        _ => {}
     }
     if card.transition_length > 1.0 {
         let what = format!("a transition_length of {}", card.transition_length);

@@ -280,6 +280,11 @@ fn knit_keys(text: &FabricText) -> Result<(), Complaint> {
         ("length_stiffness", text.length_stiffness.is_some()),
         ("spacing_leg", text.spacing_leg.is_some()),
         ("spacing_head_sinker", text.spacing_head_sinker.is_some()),
+        ("contacts", text.contacts.is_some()),
+        ("contact_distance", text.contact_distance.is_some()),
+        ("leg_distance", text.leg_distance.is_some()),
+        ("leg_stiffness", text.leg_stiffness.is_some()),
+        ("crossing_spacing", text.crossing_spacing.is_some()),
         ("paper_table_1", text.paper_table_1.is_some()),
         ("chart", text.chart.is_some()),
     ];

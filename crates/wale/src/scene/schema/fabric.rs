@@ -62,6 +62,22 @@ pub struct FabricText {
     /// Yarn length below which a head or a sinker is jammed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing_head_sinker: Option<Quantity<Length, Positive>>,
+    /// How yarns lie at their contacts: "point", in one point, or "thick", beside each other. Slower, and much nearer to the
+    /// sizes of real swatches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<ContactModel>,
+    /// Of thick contacts: distance of the centre lines of two yarns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_distance: Option<Quantity<Length, NotNegative>>,
+    /// Of thick contacts: distance of the middles of neighbouring legs below which they push each other away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub leg_distance: Option<Quantity<Length, NotNegative>>,
+    /// Of thick contacts: stiffness of that push.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub leg_stiffness: Option<Quantity<Force, NotNegative>>,
+    /// Of thick contacts: spacing of a strand that goes from face to face, over that of one that stays on a face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crossing_spacing: Option<Quantity<Ratio, Positive>>,
     /// Stiffness k_f of the springs that stand for sticking friction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anchor_stiffness: Option<Quantity<ForcePerLength, Positive>>,
@@ -87,6 +103,16 @@ pub struct FabricText {
     /// The draft of a woven fabric, in place of the chart.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub weave: Option<WeaveText>,
+}
+
+/// How yarns lie at their contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactModel {
+    /// In one point.
+    Point,
+    /// Beside each other.
+    Thick,
 }
 
 /// How a fabric lies at first.

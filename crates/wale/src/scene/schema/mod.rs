@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use chart::{ChartText, FirstRow, Worked};
-pub use fabric::{AxisAngle, FabricText, PaperTable1, Stance};
+pub use fabric::{AxisAngle, ContactModel, FabricText, PaperTable1, Stance};
 pub use happening::{
     Axes, BoxText, CapsuleText, Corner, GripText, KeyText, MotionText, ObstacleText, PlaneText, PullText, RegionText,
     SelectText, SphereText, TurnText, WhichEnd, YarnEndText,

@@ -214,6 +214,20 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
             Input,
         ),
         (
+            "schema = 1\n[fabric]\ncontact_distance = \"0.2 mm\"\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "\"0.2 mm\"",
+            "contacts in one point",
+            "contacts = \"thick\"",
+            Input,
+        ),
+        (
+            "schema = 1\n[fabric]\ncontacts = \"thick\"\ncontact_distance = \"9 mm\"\n[fabric.chart]\npattern = \"seed\"\ncolumns = 4\nrows = 4\n",
+            "\"9 mm\"",
+            "a contact_distance of",
+            "",
+            Input,
+        ),
+        (
             "schema = 1\n[fabric.chart]\nfile = \"../../etc/passwd\"\n",
             "\"../../etc/passwd\"",
             "not a path inside",

@@ -1,0 +1,136 @@
+//! Relaxed sizes of real swatches, predicted with one card: width and height of knit-and-purl patterns relative to stockinette,
+//! found on periodic tiles without friction.
+//!
+//! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [--most-loops N] [--fit ROUNDS]` prints
+//! predicted against measured sizes, of the charts that the card was fitted to and of all others apart. `--fit` first fits the
+//! card again. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
+//! left out.
+
+mod fit;
+mod sizes;
+mod swatches;
+
+use std::process::ExitCode;
+
+use rayon::prelude::*;
+use wale::model::LoopProportions;
+
+use fit::{Fit, numbers};
+use sizes::{STOCKINETTE, relaxed, spacing};
+use swatches::{Swatch, fitted, knit_and_purl};
+
+/// A predicted size, relative to stockinette as the measured one is.
+struct Predicted<'a> {
+    swatch: &'a Swatch,
+    size: [f64; 2],
+    iterations: usize,
+    converged: bool,
+    seconds: f64,
+}
+
+impl Predicted<'_> {
+    fn measured(&self) -> [f64; 2] {
+        [self.swatch.width / STOCKINETTE[0], self.swatch.height / STOCKINETTE[1]]
+    }
+}
+
+fn predict<'a>(swatches: &[&'a Swatch], card: &LoopProportions) -> Vec<Predicted<'a>> {
+    let stockinette = spacing(&relaxed(&wale::pattern::Chart::stockinette(), card, None));
+    let of = |swatch: &&'a Swatch| {
+        let clock = std::time::Instant::now();
+        let found = relaxed(&swatch.repeat, card, None);
+        let spacing = spacing(&found);
+        let size = [0, 1].map(|k| (spacing[k] - stockinette[k]).exp());
+        let (iterations, converged) = (found[0].iterations, found[0].converged);
+        eprintln!("{}: {} loops, {iterations} iterations", swatch.name, swatch.repeat.loop_count());
+        Predicted { swatch, size, iterations, converged, seconds: clock.elapsed().as_secs_f64() }
+    };
+    swatches.par_iter().with_max_len(1).map(of).collect()
+}
+
+fn print(title: &str, all: &[Predicted<'_>]) {
+    println!("{title}");
+    for one in all {
+        let ([w, h], [mw, mh]) = (one.size, one.measured());
+        let repeat = format!("{}x{}", one.swatch.repeat.column_count(), one.swatch.repeat.row_count());
+        println!(
+            "  {:<29} {repeat:>6}  {w:.2} {h:.2} against {mw:.2} {mh:.2}  {:+3.0} {:+3.0} %  {:>4} iterations{} {:>6.1} s",
+            one.swatch.name,
+            100.0 * (w / mw - 1.0),
+            100.0 * (h / mh - 1.0),
+            one.iterations,
+            if one.converged { "" } else { " NOT AT REST" },
+            one.seconds,
+        );
+    }
+    let error = |k: usize| {
+        let sum: f64 = all.iter().map(|one| (one.size[k] / one.measured()[k]).ln().powi(2)).sum();
+        (sum / all.len() as f64).sqrt()
+    };
+    let rank = |k: usize| {
+        let (a, b): (Vec<f64>, Vec<f64>) = all.iter().map(|one| (one.size[k], one.measured()[k])).unzip();
+        correlation(&ranks(&a), &ranks(&b))
+    };
+    println!("  rms of the logarithms: width {:.3}, height {:.3}", error(0), error(1));
+    println!("  rank correlation: width {:.2}, height {:.2}", rank(0), rank(1));
+}
+
+/// Ranks, equal values at their mean.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let below = |x: f64| values.iter().filter(|y| **y < x).count() as f64;
+    let equal = |x: f64| values.iter().filter(|y| **y == x).count() as f64;
+    values.iter().map(|&x| below(x) + 0.5 * (equal(x) - 1.0)).collect()
+}
+
+fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
+    let (ma, mb) = (mean(a), mean(b));
+    let product =
+        |a: &[f64], ma: f64, b: &[f64], mb: f64| a.iter().zip(b).map(|(a, b)| (a - ma) * (b - mb)).sum::<f64>();
+    product(a, ma, b, mb) / (product(a, ma, a, ma) * product(b, mb, b, mb)).sqrt()
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
+    let mut path = None;
+    let (mut card, mut most, mut rounds) = (LoopProportions::thick(), usize::MAX, 0);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        let mut number = || {
+            let text = arguments.next().ok_or(format!("{argument} without a number"))?;
+            text.parse::<usize>().map_err(|error| format!("{argument} {text}: {error}"))
+        };
+        match argument.as_str() {
+            "point" => card = LoopProportions::default(),
+            "thick" => card = LoopProportions::thick(),
+            "--most-loops" => most = number()?,
+            "--fit" => rounds = number()?,
+            _ => path = Some(argument),
+        }
+    }
+    let all = knit_and_purl(&path.ok_or("which file? knit_swatches SWATCHES.json")?)?;
+    let known = fitted(&all);
+    let known: Vec<&Swatch> = known.iter().collect();
+    if rounds > 0 {
+        let (found, error) = Fit::new(&known, card).run(rounds);
+        card = found;
+        println!("fitted to {:.4}:", error);
+        for number in numbers(&card) {
+            println!("  {} = {:.4}", number.name, *(number.place)(&mut card.clone()));
+        }
+    }
+    let small = |swatch: &&Swatch| swatch.repeat.loop_count() <= most;
+    print("fitted charts", &predict(&known, &card));
+    let others: Vec<&Swatch> = all.iter().filter(|swatch| !swatch.fitted).filter(small).collect();
+    print("other charts", &predict(&others, &card));
+    Ok(())
+}

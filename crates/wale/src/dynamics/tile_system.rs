@@ -1,0 +1,203 @@
+//! The energy of a periodic tile by its unknowns, and its second derivatives as a block-sparse matrix with the two periods
+//! beside it.
+
+use std::sync::Arc;
+
+use wale_numerics::block_pattern::BlockPattern;
+use wale_numerics::bordered::Bordered;
+use wale_numerics::sparse_cholesky::CholeskyError;
+
+use crate::energy::Foundation;
+use crate::fabric::coordinates::{BLOCK, Dof, dof};
+use crate::fabric::elements::{ElementSet, Elements};
+use crate::fabric::{Mechanics, TileCoordinates};
+use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
+
+/// Values of a block.
+const BLOCK_VALUES: usize = BLOCK * BLOCK;
+
+/// A tile's elements over its unknowns: own slots, then the two periods.
+pub(super) struct TileSystem {
+    pub coordinates: TileCoordinates,
+    mechanics: Mechanics,
+    bed: Elements<Foundation, 1>,
+    /// Which own slots are unknowns; the others are held.
+    free: Vec<bool>,
+    second: Bordered,
+    /// Where in the matrix the second derivatives of every element go, element by element.
+    places: Vec<u32>,
+    /// Gradient by the own slots and by the periods \[N\].
+    pub gradient: Vec<f64>,
+    pub period_gradient: [f64; 2],
+    world: Vec<f64>,
+    /// What a shift counts on a period, for one on a slot: as much as the nodes that move with it.
+    period_weight: f64,
+}
+
+impl TileSystem {
+    /// `bed` \[N/m\] is the stiffness under every node.
+    ///
+    /// # Errors
+    /// If the system is too large.
+    pub fn new(network: &Network, yarns: &Yarns, card: &KnitCard, bed: f64) -> Result<Self, CholeskyError> {
+        let mut coordinates = TileCoordinates::new(network);
+        let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
+        let mut springs = Elements::default();
+        if bed > 0.0 {
+            for node in 0..network.node_count() {
+                springs.push(Foundation { stiffness: bed, place: 0.0 }, [dof(BLOCK * node + 2)]);
+            }
+        }
+        // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else.
+        let mut free = coordinates.own().free().to_vec();
+        free[0] = false;
+        free[1] = false;
+        free[2] = bed > 0.0;
+        for y in 0..network.yarn_count() {
+            let first = PassId::new(network.yarn_passes(YarnId::new(y)).start);
+            free[coordinates.own().slot(first)] = false;
+        }
+        let own = |dof: Dof| coordinates.source(dof).of as usize;
+        let mut pairs = Vec::new();
+        for_each_stencil(&sets(&mechanics, &springs), |stencil| {
+            let mut blocks: Vec<u32> = stencil.iter().map(|&dof| (own(dof) / BLOCK) as u32).collect();
+            blocks.sort_unstable();
+            blocks.dedup();
+            pairs.extend(blocks.iter().flat_map(|&a| blocks.iter().map(move |&b| (a, b))));
+        });
+        let pattern = Arc::new(BlockPattern::from_pairs(coordinates.own().block_count(), pairs));
+        let mut places = Vec::new();
+        for_each_stencil(&sets(&mechanics, &springs), |stencil| {
+            for &b in stencil {
+                for &a in stencil {
+                    let (a, b) = (own(a), own(b));
+                    let block = pattern.position(a / BLOCK, b / BLOCK).expect("what an element couples meets");
+                    places.push((BLOCK_VALUES * block + BLOCK * (b % BLOCK) + a % BLOCK) as u32);
+                }
+            }
+        });
+        let second = Bordered::new(pattern, &free)?;
+        Ok(Self {
+            gradient: vec![0.0; free.len()],
+            period_gradient: [0.0; 2],
+            world: Vec::new(),
+            period_weight: network.node_count() as f64 / 3.0,
+            coordinates,
+            mechanics,
+            bed: springs,
+            free,
+            second,
+            places,
+        })
+    }
+
+    /// Energy \[J\].
+    pub fn energy(&mut self, unknowns: &[f64]) -> f64 {
+        let mut world = std::mem::take(&mut self.world);
+        self.coordinates.place(unknowns, &mut world);
+        let energy = sets(&self.mechanics, &self.bed).iter().map(|set| set.total(&world)).sum();
+        self.world = world;
+        energy
+    }
+
+    /// Energy \[J\]; finds the gradient, and second derivatives between the exact (`convexity = 0`) and positive semi-definite
+    /// ones (`convexity = 1`).
+    pub fn linearise(&mut self, unknowns: &[f64], convexity: f64) -> f64 {
+        self.coordinates.place(unknowns, &mut self.world);
+        self.gradient.fill(0.0);
+        self.period_gradient = [0.0; 2];
+        self.second.clear();
+        let Self { coordinates, mechanics, bed, free, second, places, gradient, period_gradient, world, .. } = self;
+        let mut places = places.iter();
+        let mut energy = 0.0;
+        let mut columns: Vec<[f64; 2]> = Vec::new();
+        for set in sets(mechanics, bed) {
+            energy += set.visit(world, convexity, &mut |stencil, slope, curvature| {
+                columns.clear();
+                for (j, &dof) in stencil.iter().enumerate() {
+                    let to = coordinates.source(dof);
+                    let mut column = [0.0; 2];
+                    for (i, &dof) in stencil.iter().enumerate() {
+                        let value = curvature(i, j);
+                        let from = coordinates.source(dof);
+                        column[from.axis] += from.factor * value;
+                        second.matrix.values[*places.next().expect("a place for every value") as usize] += value;
+                    }
+                    if free[to.of as usize] {
+                        gradient[to.of as usize] += slope[j];
+                        second.border[0][to.of as usize] += column[0];
+                        second.border[1][to.of as usize] += column[1];
+                    }
+                    period_gradient[to.axis] += to.factor * slope[j];
+                    second.corner[to.axis][0] += to.factor * column[0];
+                    second.corner[to.axis][1] += to.factor * column[1];
+                }
+            });
+        }
+        energy
+    }
+
+    /// Largest component of the gradient \[N\]; by the periods, a loop.
+    pub fn largest_force(&self) -> f64 {
+        let own = self.gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
+        let [w, h] = self.period_gradient;
+        own.max(w.abs()).max(h.abs())
+    }
+
+    /// Newton's step with a multiple of the identity \[N/m\] added to the second derivatives, and its slope and curvature:
+    /// `gᵀd` and `dᵀHd` \[J\]. `None` if they are not positive definite even so.
+    ///
+    /// # Errors
+    /// If something is not finite.
+    pub fn step(&mut self, shift: f64) -> Result<Option<Step>, CholeskyError> {
+        let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
+        let mut periods = self.period_gradient.map(|g| -g);
+        if !self.second.solve(shift, self.period_weight, &mut direction, &mut periods)? {
+            return Ok(None);
+        }
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let slope = dot(&direction, &self.gradient) + dot(&periods, &self.period_gradient);
+        let square = dot(&direction, &direction) + self.period_weight * dot(&periods, &periods);
+        direction.extend(periods);
+        Ok(Some(Step { direction, slope, curvature: -slope - shift * square }))
+    }
+
+    /// The longest part of a step that no segment's rest length reaches zero in, and in which no coordinate moves further than
+    /// `most` \[m\].
+    pub fn longest_step(&mut self, unknowns: &[f64], direction: &[f64], most: f64) -> f64 {
+        self.coordinates.place(unknowns, &mut self.world);
+        let n = self.coordinates.own().len();
+        let change = |dof: Dof| {
+            let source = self.coordinates.source(dof);
+            direction[source.of as usize] + source.factor * direction[n + source.axis]
+        };
+        let mut longest: f64 = 1.0;
+        for stencil in &self.mechanics.stretch.stencils {
+            let rest = self.world[stencil[7] as usize] - self.world[stencil[3] as usize];
+            let rate = change(stencil[7]) - change(stencil[3]);
+            if rate < 0.0 {
+                longest = longest.min(0.9 * rest / -rate);
+            }
+        }
+        let largest = direction[..n].iter().fold(0.0f64, |m, d| m.max(d.abs()));
+        longest.min(most / largest.max(f64::MIN_POSITIVE))
+    }
+}
+
+/// A step by all unknowns.
+pub(super) struct Step {
+    pub direction: Vec<f64>,
+    pub slope: f64,
+    pub curvature: f64,
+}
+
+fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 10] {
+    let [a, b, c, d, e, f, g, h, i] = mechanics.sets();
+    [a, b, c, d, e, f, g, h, i, bed]
+}
+
+fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {
+    for set in sets {
+        set.stencils(&mut visit);
+    }
+}

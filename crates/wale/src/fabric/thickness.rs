@@ -1,0 +1,116 @@
+//! Elements of yarns with a thickness: stretch and bending of yarns beside their nodes, and legs that touch.
+
+use super::coordinates::CoordinateMap;
+use super::elements::Elements;
+use super::mechanics::Mechanics;
+use super::sides::{Sides, steps_to_front};
+use crate::energy::{Bending, LegContact, Stretch, Thick};
+use crate::model::{KnitCard, Neighbour, Network, PassId, SegmentKind, Thickness, YarnId};
+
+/// A pass of some periodic image.
+type Place = (PassId, [i16; 2], i16);
+
+/// Elements of yarns with a thickness; none for yarns that meet in one point.
+#[derive(Clone, Debug, Default)]
+pub struct ThickElements {
+    /// Stretch of segments, in yarn order.
+    pub stretch: Elements<Thick<Stretch, 2>, 26>,
+    /// Bending at passes, in yarn order.
+    pub bending: Elements<Thick<Bending, 3>, 39>,
+    /// Contacts of the legs on both sides of every sinker.
+    pub legs: Elements<Thick<LegContact, 4>, 52>,
+}
+
+impl ThickElements {
+    /// Takes the stiffness of all segments and the bends from `plain`, whose segments stay without stiffness.
+    pub(super) fn take(
+        network: &Network,
+        card: &KnitCard,
+        thickness: &Thickness,
+        plain: &mut Mechanics,
+        map: &mut dyn CoordinateMap,
+    ) -> Self {
+        let sides = Sides::new(network, thickness.contact_distance);
+        let yarn_of = network.pass_yarn();
+        let next = |pass: PassId, step| network.neighbour(yarn_of[pass.index()], pass, step);
+        let mut thick = Self::default();
+        for (stretch, &pass) in plain.stretch.elements.iter_mut().zip(&plain.segment_after) {
+            let Some(after) = next(pass, 1) else { continue };
+            let inner = Stretch { stiffness: std::mem::take(&mut stretch.stiffness) };
+            thick.stretch.push(
+                beside(network, &sides, inner, [itself(pass), place(after)]),
+                stencil(network, &sides, map, [itself(pass), place(after)]),
+            );
+        }
+        let bends = std::mem::take(&mut plain.bending);
+        for (inner, &pass) in bends.elements.into_iter().zip(&plain.bend_at) {
+            let (Some(before), Some(after)) = (next(pass, -1), next(pass, 1)) else { continue };
+            let three = [place(before), itself(pass), place(after)];
+            thick.bending.push(beside(network, &sides, inner, three), stencil(network, &sides, map, three));
+        }
+        thick.add_legs(network, card, thickness, &sides, map);
+        thick
+    }
+
+    /// The legs on both sides of every sinker: two passes before it and two behind it along the yarn.
+    fn add_legs(
+        &mut self,
+        network: &Network,
+        card: &KnitCard,
+        thickness: &Thickness,
+        sides: &Sides,
+        map: &mut dyn CoordinateMap,
+    ) {
+        // A leg that is pushed away by more than its length would turn its loop over.
+        let distance = thickness.leg_distance.min(card.loop_length);
+        if distance <= 0.0 || thickness.leg_stiffness <= 0.0 {
+            return;
+        }
+        let inner = LegContact { stiffness: thickness.leg_stiffness, distance };
+        let kind = |pass: PassId| network.segment_kind[pass.index()];
+        for y in 0..network.yarn_count() {
+            let yarn = YarnId::new(y);
+            for pass in network.yarn_passes(yarn).map(PassId::new) {
+                if kind(pass) != SegmentKind::Sinker || network.is_out(pass) {
+                    continue;
+                }
+                let [Some(a), Some(b), Some(c), Some(d)] =
+                    [-2, -1, 2, 3].map(|step| network.neighbour(yarn, pass, step))
+                else {
+                    continue;
+                };
+                if kind(a.pass) == SegmentKind::Leg && kind(c.pass) == SegmentKind::Leg {
+                    let four = [a, b, c, d].map(place);
+                    self.legs.push(beside(network, sides, inner, four), stencil(network, sides, map, four));
+                }
+            }
+        }
+    }
+}
+
+/// Whether two passes lie on different faces of the fabric.
+pub(super) fn crosses(network: &Network, a: PassId, b: PassId) -> bool {
+    steps_to_front(network, a) * steps_to_front(network, b) < 0.0
+}
+
+fn itself(pass: PassId) -> Place {
+    (pass, [0; 2], 0)
+}
+
+fn place(neighbour: Neighbour) -> Place {
+    (neighbour.pass, neighbour.image, neighbour.turns)
+}
+
+fn beside<E: Copy, const P: usize>(network: &Network, sides: &Sides, inner: E, places: [Place; P]) -> Thick<E, P> {
+    Thick { inner, offset: places.map(|(pass, ..)| sides.offset(network, pass)), softness: sides.softness() }
+}
+
+fn stencil<const P: usize, const N: usize>(
+    network: &Network,
+    sides: &Sides,
+    map: &mut dyn CoordinateMap,
+    places: [Place; P],
+) -> [u32; N] {
+    let coordinates = places.map(|place| sides.coordinates(map, network, place));
+    std::array::from_fn(|i| coordinates[i / 13][i % 13])
+}
