@@ -144,3 +144,15 @@ fn thick_contacts_move_as_others_do() {
     let of = |kind: &str| report.energies.iter().find(|(name, _)| *name == kind).map_or(0.0, |(_, energy)| *energy);
     assert!(of("stretch") > 0.0 && of("bending") > 0.0);
 }
+
+#[test]
+fn thick_contacts_without_a_distance_stay_in_their_nodes() {
+    let scene = scene(
+        "pattern = \"garter\"\ncolumns = 4\nrows = 4\n[fabric]\ncontacts = \"thick\"\ncontact_distance = 0\n[simulation]\ngravity = 0",
+    );
+    let mut simulation = simulation(&scene);
+    while simulation.state().time < 0.02 {
+        let report = simulation.step().unwrap();
+        assert!(report.largest_stretch < 1.1 && report.energies.iter().all(|(_, energy)| energy.is_finite()));
+    }
+}

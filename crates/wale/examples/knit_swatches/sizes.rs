@@ -5,7 +5,7 @@ use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from
 use wale::model::{LoopProportions, YarnCard};
 use wale::pattern::{Chart, knit};
 
-/// Measured relaxed size of stockinette \[mm\]: means of the knit side's and the purl side's swatch, and of fitted repeats.
+/// Measured relaxed size of stockinette \[mm\]: the mean of its four swatches, one of them shown from its purl side.
 pub const STOCKINETTE: [f64; 2] = [99.25, 81.0];
 /// Starts of a repeat; one for a repeat of more than [`MANY_LOOPS`], whose patches average over what starts differ in.
 const STARTS: usize = 4;

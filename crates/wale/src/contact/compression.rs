@@ -324,8 +324,8 @@ impl Neighbours {
             let node = self.block[k] as usize;
             let x = point(q, node);
             match &compression.normals {
-                Some(normals) => add(x, scale(normals.of(q, node), self.offset[k])),
-                None => x,
+                Some(normals) if self.offset[k] != 0.0 => add(x, scale(normals.of(q, node), self.offset[k])),
+                _ => x,
             }
         };
         let here = place(1);

@@ -137,7 +137,7 @@ impl TileSystem {
         energy
     }
 
-    /// Largest component of the gradient \[N\]; by the periods, a loop.
+    /// Largest component of the gradient \[N\], by the own slots and by the periods.
     pub fn largest_force(&self) -> f64 {
         let own = self.gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
         let [w, h] = self.period_gradient;

@@ -51,12 +51,16 @@ impl<E: Copy, const P: usize> Thick<E, P> {
         let mut out = [T::constant(0.0); L];
         for pass in 0..P {
             let at = OF_PASS * pass;
-            let [a, b, c] = [3, 6, 9].map(|k| point(q, at + k));
-            let n = normal(a, b, c, self.softness);
-            for i in 0..3 {
-                out[INNER * pass + i] = q[at + i] + n[i].scale(self.offset[pass]);
-            }
+            out[INNER * pass..INNER * pass + 3].copy_from_slice(&point(q, at));
             out[INNER * pass + 3] = q[at + 12];
+            // A pass in its node has no normal: there may be nothing around it.
+            if self.offset[pass] != 0.0 {
+                let [a, b, c] = [3, 6, 9].map(|k| point(q, at + k));
+                let n = normal(a, b, c, self.softness);
+                for i in 0..3 {
+                    out[INNER * pass + i] = q[at + i] + n[i].scale(self.offset[pass]);
+                }
+            }
         }
         out
     }
@@ -64,12 +68,18 @@ impl<E: Copy, const P: usize> Thick<E, P> {
     /// First derivatives of a pass's point and sliding coordinate.
     fn moved<const N: usize>(&self, pass: usize, q: &[f64; N]) -> Move {
         let at = OF_PASS * pass;
+        let mut out = [[0.0; OF_PASS]; INNER];
+        for (i, row) in out.iter_mut().enumerate() {
+            row[if i < 3 { i } else { OF_PASS - 1 }] = 1.0;
+        }
+        if self.offset[pass] == 0.0 {
+            return out;
+        }
         let [a, b, c] = [3, 6, 9].map(|k| point(q, at + k));
         let (e1, e2) = (sub(b, a), sub(c, a));
         let n = cross(e1, e2);
         let size = (dot(n, n) + self.softness * self.softness).sqrt();
         let unit = scale(n, 1.0 / size);
-        let mut out = [[0.0; OF_PASS]; INNER];
         // A change of N by b is −e₂ × δ, by c it is e₁ × δ, and by a what keeps their sum zero.
         let axis = |j: usize| std::array::from_fn::<f64, 3, _>(|i| if i == j { 1.0 } else { 0.0 });
         for j in 0..3 {
@@ -82,9 +92,7 @@ impl<E: Copy, const P: usize> Thick<E, P> {
                     out[i][3 + 3 * k + j] = self.offset[pass] / size * (change[i] - along * unit[i]);
                 }
             }
-            out[j][j] = 1.0;
         }
-        out[3][12] = 1.0;
         out
     }
 
@@ -231,6 +239,25 @@ mod tests {
             check(&bending, &q, 1.0);
             check_blend(&bending, &q, 1e-9);
         }
+    }
+
+    #[test]
+    fn a_pass_in_its_node_needs_nothing_around_it() {
+        // Nothing around either node, and no distance over which a normal could fade.
+        let mut q = [0.0; 26];
+        for corner in 0..4 {
+            q[OF_PASS + 3 * corner] = 1.5;
+        }
+        q[25] = 1.0;
+        let element = Thick { inner: Stretch { stiffness: 2.0 }, offset: [0.0; 2], softness: 0.0 };
+        let local = element.exact(&q);
+        let plain = element.inner.exact(&[0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 1.0]);
+        let mut closed = Local::zero();
+        element.add_blended(&q, 0.0, &mut closed);
+        assert!(local.energy == plain.energy && closed.energy == plain.energy && plain.gradient[4] > 0.0);
+        assert!(
+            closed.gradient[OF_PASS] == plain.gradient[4] && closed.hessian.iter().flatten().all(|h| h.is_finite())
+        );
     }
 
     #[test]
