@@ -184,9 +184,10 @@ pub struct Relax {
     /// Starts from different small disturbances; equilibria need not be unique
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
-    /// Stiffness of the table under the fabric, in bending stiffness over loop length cubed
-    #[arg(long, default_value_t = 10.0, value_parser = parse_bed)]
-    pub bed: f64,
+    /// Stiffness of the table under the fabric, in bending stiffness over loop length cubed; left out, that with which the
+    /// card's proportions were fitted
+    #[arg(long, value_parser = parse_bed)]
+    pub bed: Option<f64>,
 }
 
 /// `wale inspect`

@@ -64,7 +64,7 @@ fn rolled(network: &Network, time: f64) -> Frame {
 /// A relaxed tile, laid out a few times along course and wale.
 fn relaxed(chart: &Chart, yarn: &YarnCard, card: &KnitCard) -> Snapshot {
     let network = knit::tile(chart, card).expect("the repeat has no end");
-    let rest = relax_tile(&network, yarn, card, &TileSettings::default());
+    let rest = relax_tile(&network, yarn, card, &TileSettings::of(card));
     let periods = [
         DVec3::X * rest.wale_spacing * chart.column_count() as f64,
         DVec3::Y * rest.course_spacing * chart.row_count() as f64,

@@ -3,8 +3,11 @@
 //! Measured: KnitDB (Hofmann et al. 2019), swatches of 60 × 60 stitches in one yarn; width and height in millimetres.
 //! Repeats differ by about 4 % in height; stockinette, seed and moss are means of their repeats.
 
+mod cards;
+
 use wale::dynamics::tile_equilibrium::{TileSettings, relax_from_starts, relax_tile};
-use wale::model::{LoopProportions, YarnCard};
+use wale::dynamics::tile_sensitivity::TileSensitivity;
+use wale::model::{KnitCard, LoopProportions, YarnCard};
 use wale::pattern::{Chart, knit};
 
 /// Root mean square of the logarithms of model over measured that the cards were fitted to reach, of point and thick contacts.
@@ -56,7 +59,7 @@ fn compare(proportions: &LoopProportions) -> [f64; 2] {
     println!("pattern        wale against measured, relative to stockinette: width  height   error %");
     for (name, chart, width, height) in swatches {
         let tile = knit::tile(&chart, &card).unwrap();
-        let best = relax_from_starts(&tile, &yarn, &card, &TileSettings::default(), STARTS).swap_remove(0);
+        let best = relax_from_starts(&tile, &yarn, &card, &TileSettings::of(&card), STARTS).swap_remove(0);
         assert!(best.converged, "{name} did not come to rest: residual {:e}", best.residual);
         let (w, h) = (best.wale_spacing, best.course_spacing);
         let &mut (w0, h0, width0, height0) = reference.get_or_insert((w, h, width, height));
@@ -128,4 +131,33 @@ fn doubling_loop_and_yarn_leaves_mundens_constants_unchanged() {
     // Fully relaxed plain knit of the literature: Kc 5.5, Kw 4.2, ratio about 1.3.
     let [course, wale, _] = table[1];
     assert!((course / 5.5 - 1.0).abs() < 0.1 && (wale / 4.2 - 1.0).abs() < 0.1, "{course} {wale}");
+}
+
+#[test]
+fn sizes_follow_the_card_as_relaxing_again_shows() {
+    let yarn = cards::cards().0;
+    let settings = TileSettings { bed: 30.0, tolerance: 1e-9, ..TileSettings::default() };
+    let with = |change: f64| {
+        let mut proportions = LoopProportions::thick();
+        proportions.bend_angle_leg *= 1.0 + change;
+        proportions.spacing_head_sinker *= 1.0 - change;
+        proportions.card(&yarn, 6e-3)
+    };
+    let (card, more, less) = (with(0.0), with(1e-4), with(-1e-4));
+    let chart = Chart::rib(1, 1).unwrap();
+    let tile = |card: &KnitCard| knit::tile(&chart, card).unwrap();
+    let at = relax_tile(&tile(&card), &yarn, &card, &settings);
+    let found = TileSensitivity::new(&tile(&card), &yarn, &card, &settings, &at).expect("a rib at rest").change(
+        &tile(&more),
+        &yarn,
+        &more,
+        &settings,
+        &at,
+    );
+    let [high, low] = [&more, &less].map(|card| relax_tile(&tile(card), &yarn, card, &settings));
+    let expected =
+        [0.5 * (high.wale_spacing / low.wale_spacing).ln(), 0.5 * (high.course_spacing / low.course_spacing).ln()];
+    for (found, expected) in found.into_iter().zip(expected) {
+        assert!(expected.abs() > 1e-6 && (found / expected - 1.0).abs() < 1e-2, "{found:e} {expected:e}");
+    }
 }

@@ -39,7 +39,8 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     }
     let tile = knit::tile(&repeat, card)
         .map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.scene.display())))?;
-    let settings = TileSettings { bed: arguments.bed, ..TileSettings::default() };
+    let usual = TileSettings::of(card);
+    let settings = TileSettings { bed: arguments.bed.unwrap_or(usual.bed), ..usual };
     let found = relax_from_starts(&tile, yarns, card, &settings, arguments.starts as usize);
     let best = &found[0];
     if !best.converged {

@@ -2,18 +2,64 @@
 
 use rayon::prelude::*;
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from_starts, relax_tile_from};
-use wale::model::{LoopProportions, YarnCard};
+use wale::model::{KnitCard, LoopProportions, Network, YarnCard};
 use wale::pattern::{Chart, knit};
 
 /// Measured relaxed size of stockinette \[mm\]: the mean of its four swatches, one of them shown from its purl side.
 pub const STOCKINETTE: [f64; 2] = [99.25, 81.0];
-/// Starts of a repeat; one for a repeat of more than [`MANY_LOOPS`], whose patches average over what starts differ in.
-const STARTS: usize = 4;
-const MANY_LOOPS: usize = 50;
-const SETTINGS: TileSettings = TileSettings { bed: 10.0, noise: 0.01, seed: 1, max_iterations: 1500, tolerance: 1e-4 };
+/// Starts of a repeat of few, some and many loops: the patches of a large one average over what starts differ in.
+fn starts(loops: usize) -> usize {
+    match loops {
+        0..=20 => 4,
+        21..=60 => 2,
+        _ => 1,
+    }
+}
+
+/// A card and the bed on which its swatches are measured.
+#[derive(Clone)]
+pub struct Model {
+    pub proportions: LoopProportions,
+    pub settings: TileSettings,
+}
+
+impl Model {
+    /// The bed is that of the proportions' contacts.
+    pub fn new(proportions: LoopProportions) -> Self {
+        let bed = TileSettings::of(&proportions.card(&yarn(), 1.0)).bed;
+        let settings = TileSettings { bed, noise: 0.01, relief: 0.0, seed: 1, max_iterations: 1500, tolerance: 1e-4 };
+        Self { proportions, settings }
+    }
+
+    pub fn card(&self) -> KnitCard {
+        self.proportions.card(&yarn(), 1.0)
+    }
+
+    pub fn tile(&self, chart: &Chart) -> Network {
+        knit::tile(chart, &self.card()).expect("the repeat of a chart of knits and purls has no end")
+    }
+
+    /// Equilibria of a repeat, the lowest first.
+    pub fn relaxed(&self, chart: &Chart) -> Vec<TileEquilibrium> {
+        relax_from_starts(&self.tile(chart), &yarn(), &self.card(), &self.settings, starts(chart.loop_count()))
+    }
+
+    /// Equilibria found from those of a card that differs a little; from anew if one of them is none any more.
+    pub fn relaxed_from(&self, chart: &Chart, near: &[TileEquilibrium]) -> Vec<TileEquilibrium> {
+        let (tile, card) = (self.tile(chart), self.card());
+        let again =
+            |at: &TileEquilibrium| relax_tile_from(&tile, &yarn(), &card, &self.settings, at.coordinates.clone());
+        let mut found: Vec<TileEquilibrium> = near.par_iter().map(again).collect();
+        if found.iter().any(|at| !at.converged) {
+            return self.relaxed(chart);
+        }
+        found.sort_by(|a, b| a.energy.total_cmp(&b.energy));
+        found
+    }
+}
 
 /// Everything is in proportion to the loop: lengths in loops, forces in `k_b/ℓ²`.
-fn yarn() -> YarnCard {
+pub fn yarn() -> YarnCard {
     YarnCard {
         linear_density: 1.0,
         radius: 0.05,
@@ -28,21 +74,7 @@ fn yarn() -> YarnCard {
     }
 }
 
-/// Equilibria of a repeat, the lowest first; those found from `near` where there are some.
-pub fn relaxed(chart: &Chart, proportions: &LoopProportions, near: Option<&[TileEquilibrium]>) -> Vec<TileEquilibrium> {
-    let yarn = yarn();
-    let card = proportions.card(&yarn, 1.0);
-    let tile = knit::tile(chart, &card).expect("the repeat of a chart of knits and purls has no end");
-    let starts = if chart.loop_count() > MANY_LOOPS { 1 } else { STARTS };
-    let Some(near) = near else { return relax_from_starts(&tile, &yarn, &card, &SETTINGS, starts) };
-    let again = |at: &TileEquilibrium| relax_tile_from(&tile, &yarn, &card, &SETTINGS, at.coordinates.clone());
-    let found: Vec<TileEquilibrium> = near.par_iter().map(again).collect();
-    if found.iter().all(|at| at.converged) { found } else { relaxed(chart, proportions, None) }
-}
-
 /// Logarithms of wale and course spacing of the lowest equilibrium. A tile that has folded up has some size too.
 pub fn spacing(found: &[TileEquilibrium]) -> [f64; 2] {
-    let lowest = found.iter().min_by(|a, b| (!a.converged).cmp(&!b.converged).then(a.energy.total_cmp(&b.energy)));
-    let lowest = lowest.expect("at least one start");
-    [lowest.wale_spacing, lowest.course_spacing].map(|spacing| spacing.max(0.02).ln())
+    [found[0].wale_spacing, found[0].course_spacing].map(|spacing| spacing.max(0.02).ln())
 }

@@ -15,6 +15,7 @@ mod surroundings;
 pub mod system;
 pub mod terms;
 pub mod tile_equilibrium;
+pub mod tile_sensitivity;
 mod tile_system;
 
 pub use state::State;

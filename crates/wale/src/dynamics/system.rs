@@ -43,6 +43,7 @@ pub struct System {
     pub(super) thick_segments: Term<Thick<Stretch, 2>, 26>,
     pub(super) thick_bends: Term<Thick<(Bending, Rate), 3>, 39>,
     pub(super) legs: Term<Thick<LegContact, 4>, 52>,
+    pub(super) facing: Term<LegContact, 16>,
     pub(super) wraps: Term<(Wrapping, Rate), 12>,
     pub(super) stitch_length: Term<StitchLength, 2>,
     pub(super) spacing: Term<Spacing, 2>,
@@ -70,7 +71,7 @@ pub struct System {
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 15;
+pub(super) const TERMS: usize = 16;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -196,6 +197,7 @@ impl System {
             thick_segments: Term::new(mechanics.thick.stretch, &chunks),
             thick_bends: Term::new(thick_bends, &chunks),
             legs: Term::new(mechanics.thick.legs, &chunks),
+            facing: Term::new(mechanics.thick.facing, &chunks),
             wraps: Term::new(wraps, &chunks),
             stitch_length: Term::new(mechanics.stitch_length, &chunks),
             spacing: Term::new(mechanics.spacing, &chunks),
@@ -224,6 +226,7 @@ impl System {
         system.thick_segments.locate(&system.pattern);
         system.thick_bends.locate(&system.pattern);
         system.legs.locate(&system.pattern);
+        system.facing.locate(&system.pattern);
         system.wraps.locate(&system.pattern);
         system.stitch_length.locate(&system.pattern);
         system.spacing.locate(&system.pattern);
@@ -264,6 +267,7 @@ impl System {
             &self.thick_segments,
             &self.thick_bends,
             &self.legs,
+            &self.facing,
             &self.wraps,
             &self.stitch_length,
             &self.spacing,

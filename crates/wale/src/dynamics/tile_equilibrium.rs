@@ -16,6 +16,8 @@ pub struct TileSettings {
     pub bed: f64,
     /// Size of the random displacement that breaks the flat layout's symmetry, in loop lengths \[–\].
     pub noise: f64,
+    /// How far knit loops are laid in front of purl loops at first, in loop lengths \[–\]: a rib folds, and may lie flat too.
+    pub relief: f64,
     /// Seed of that displacement.
     pub seed: u64,
     /// Most Newton iterations.
@@ -24,9 +26,22 @@ pub struct TileSettings {
     pub tolerance: f64,
 }
 
+impl TileSettings {
+    /// Those of a card: on a bed as its proportions were fitted with.
+    #[must_use]
+    pub fn of(card: &KnitCard) -> Self {
+        let bed = if card.thickness.is_some() { Self::THICK_BED } else { Self::POINT_BED };
+        Self { bed, ..Self::default() }
+    }
+
+    /// Bed of fabrics whose yarns meet in one point, and of those whose yarns lie beside each other.
+    const POINT_BED: f64 = 10.0;
+    const THICK_BED: f64 = 20.0;
+}
+
 impl Default for TileSettings {
     fn default() -> Self {
-        Self { bed: 10.0, noise: 0.01, seed: 1, max_iterations: 300, tolerance: 1e-7 }
+        Self { bed: Self::POINT_BED, noise: 0.01, relief: 0.0, seed: 1, max_iterations: 300, tolerance: 1e-7 }
     }
 }
 
@@ -64,8 +79,8 @@ pub fn relax_tile(
     relax_tile_from(network, yarns, card, settings, start)
 }
 
-/// How much more the layout is disturbed at each start.
-const DISTURBED: [f64; 4] = [1.0, 5.0, 5.0, 10.0];
+/// How much more the layout is disturbed at each start, and with which relief.
+const DISTURBED: [(f64, f64); 4] = [(1.0, 0.0), (1.0, 0.25), (5.0, 0.0), (10.0, 0.0)];
 
 /// Relaxes a periodic tile from several starts, that of lowest energy first: equilibria are not unique, and the lowest is the
 /// one that a swatch shaken long enough would find. Those that did not come to rest come last.
@@ -79,8 +94,9 @@ pub fn relax_from_starts(
 ) -> Vec<TileEquilibrium> {
     let yarns = yarns.into();
     let run = |start: usize| {
-        let (seed, noise) = (settings.seed + start as u64, settings.noise * DISTURBED[start % DISTURBED.len()]);
-        relax_tile(network, &yarns, card, &TileSettings { seed, noise, ..*settings })
+        let (more, relief) = DISTURBED[start % DISTURBED.len()];
+        let (seed, noise) = (settings.seed + start as u64, settings.noise * more);
+        relax_tile(network, &yarns, card, &TileSettings { seed, noise, relief, ..*settings })
     };
     let mut found: Vec<TileEquilibrium> = (0..starts).into_par_iter().map(run).collect();
     found.sort_by(|a, b| (!a.converged).cmp(&!b.converged).then(a.energy.total_cmp(&b.energy)));
@@ -103,8 +119,7 @@ pub fn relax_tile_from(
     let yarns = yarns.into();
     let length = card.loop_length;
     let force = yarns.first().bending_stiffness / (length * length);
-    let mut system =
-        TileSystem::new(network, &yarns, card, settings.bed * force / length).expect("a tile fits in memory");
+    let mut system = TileSystem::of(network, &yarns, card, settings);
     assert_eq!(start.len(), system.coordinates.unknown_len());
     let unknowns = system.coordinates.unknowns(start);
     let mut descent = Descent {
@@ -148,6 +163,12 @@ fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64
             random ^= random << 17;
             let unit = (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
             start[BLOCK * node + k] += settings.noise * length * unit;
+        }
+    }
+    for of_loop in &network.loops {
+        let side = if of_loop.knit { 0.5 } else { -0.5 };
+        for node in &of_loop.nodes {
+            start[BLOCK * node.index() + 2] += side * settings.relief * length;
         }
     }
     start

@@ -7,6 +7,7 @@ use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 
+use super::tile_equilibrium::TileSettings;
 use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, Dof, dof};
 use crate::fabric::elements::{ElementSet, Elements};
@@ -35,6 +36,15 @@ pub(super) struct TileSystem {
 }
 
 impl TileSystem {
+    /// The system of a tile as it is brought to rest with these settings.
+    ///
+    /// # Panics
+    /// If the tile is too large for memory.
+    pub fn of(network: &Network, yarns: &Yarns, card: &KnitCard, settings: &TileSettings) -> Self {
+        let stiffness = yarns.first().bending_stiffness / card.loop_length.powi(3);
+        Self::new(network, yarns, card, settings.bed * stiffness).expect("a tile fits in memory")
+    }
+
     /// `bed` \[N/m\] is the stiffness under every node.
     ///
     /// # Errors
@@ -162,6 +172,19 @@ impl TileSystem {
         Ok(Some(Step { direction, slope, curvature: -slope - shift * square }))
     }
 
+    /// The row of the inverse of the second derivatives that belongs to a period, by own slots and periods \[m/N\]; `None` if they
+    /// are not positive definite.
+    pub fn inverse_row(&mut self, axis: usize) -> Option<Vec<f64>> {
+        let mut row = vec![0.0; self.gradient.len()];
+        let mut periods = [0.0; 2];
+        periods[axis] = 1.0;
+        if !self.second.solve(0.0, self.period_weight, &mut row, &mut periods).ok()? {
+            return None;
+        }
+        row.extend(periods);
+        Some(row)
+    }
+
     /// The longest part of a step that no segment's rest length reaches zero in, and in which no coordinate moves further than
     /// `most` \[m\].
     pub fn longest_step(&mut self, unknowns: &[f64], direction: &[f64], most: f64) -> f64 {
@@ -191,9 +214,9 @@ pub(super) struct Step {
     pub curvature: f64,
 }
 
-fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 10] {
-    let [a, b, c, d, e, f, g, h, i] = mechanics.sets();
-    [a, b, c, d, e, f, g, h, i, bed]
+fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 11] {
+    let [a, b, c, d, e, f, g, h, i, j] = mechanics.sets();
+    [a, b, c, d, e, f, g, h, i, j, bed]
 }
 
 fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {

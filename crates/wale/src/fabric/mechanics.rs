@@ -61,14 +61,15 @@ impl Mechanics {
 
     /// All kinds, for whoever treats them alike.
     #[must_use]
-    pub fn sets(&self) -> [&dyn ElementSet; 9] {
-        let ThickElements { stretch, bending, legs } = &self.thick;
+    pub fn sets(&self) -> [&dyn ElementSet; 10] {
+        let ThickElements { stretch, bending, legs, facing } = &self.thick;
         [
             &self.stretch,
             &self.bending,
             stretch,
             bending,
             legs,
+            facing,
             &self.wrapping,
             &self.stitch_length,
             &self.spacing,

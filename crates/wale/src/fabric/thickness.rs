@@ -7,6 +7,10 @@ use super::sides::{Sides, steps_to_front};
 use crate::energy::{Bending, LegContact, Stretch, Thick};
 use crate::model::{KnitCard, Neighbour, Network, PassId, SegmentKind, Thickness, YarnId};
 
+/// Passes of a loop along its yarn, and how many loops further than the next one a leg may meet another.
+const PASSES_OF_LOOP: i32 = 8;
+const FACING_LOOPS: i32 = 2;
+
 /// A pass of some periodic image.
 type Place = (PassId, [i16; 2], i16);
 
@@ -19,6 +23,8 @@ pub struct ThickElements {
     pub bending: Elements<Thick<Bending, 3>, 39>,
     /// Contacts of the legs on both sides of every sinker.
     pub legs: Elements<Thick<LegContact, 4>, 52>,
+    /// Contacts of legs that meet where the wales between them fold away, as the purls of a rib do.
+    pub facing: Elements<LegContact, 16>,
 }
 
 impl ThickElements {
@@ -79,9 +85,28 @@ impl ThickElements {
                 else {
                     continue;
                 };
-                if kind(a.pass) == SegmentKind::Leg && kind(c.pass) == SegmentKind::Leg {
-                    let four = [a, b, c, d].map(place);
-                    self.legs.push(beside(network, sides, inner, four), stencil(network, sides, map, four));
+                if kind(a.pass) != SegmentKind::Leg || kind(c.pass) != SegmentKind::Leg {
+                    continue;
+                }
+                let four = [a, b, c, d].map(place);
+                self.legs.push(beside(network, sides, inner, four), stencil(network, sides, map, four));
+                let facing = LegContact { stiffness: thickness.leg_stiffness, distance: thickness.facing_distance };
+                for loops in 1..=FACING_LOOPS {
+                    let [Some(sinker), Some(c), Some(d)] =
+                        [0, 2, 3].map(|step| network.neighbour(yarn, pass, step + PASSES_OF_LOOP * loops))
+                    else {
+                        break;
+                    };
+                    if kind(sinker.pass) != SegmentKind::Sinker || kind(c.pass) != SegmentKind::Leg {
+                        break;
+                    }
+                    if facing.distance > 0.0 {
+                        let four = [a, b, c, d].map(place).map(|(pass, image, turns)| {
+                            let [x, y, z] = map.position(network.pass_node[pass.index()], image);
+                            [x, y, z, map.sliding(pass, turns)]
+                        });
+                        self.facing.push(facing, std::array::from_fn(|i| four[i / 4][i % 4]));
+                    }
                 }
             }
         }

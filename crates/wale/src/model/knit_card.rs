@@ -56,6 +56,9 @@ pub struct Thickness {
     /// Spacing distance of a strand that goes from one face of the fabric to the other, over that of one that stays on a
     /// face \[–\]: contacts on opposite sides of a yarn nest.
     pub crossing_spacing: f64,
+    /// Distance of the middles of legs that meet where the wales between them fold away, below which they push each other
+    /// away \[m\].
+    pub facing_distance: f64,
 }
 
 impl Thickness {
@@ -67,6 +70,7 @@ impl Thickness {
             leg_distance: length * self.leg_distance,
             leg_stiffness: force * self.leg_stiffness,
             crossing_spacing: self.crossing_spacing,
+            facing_distance: length * self.facing_distance,
         }
     }
 }
@@ -97,6 +101,9 @@ pub struct LoopProportions {
     pub spacing_head_sinker: f64,
     /// Thickness of the yarns at their contacts, in loop lengths and in `k_b/ℓ²`.
     pub thickness: Option<Thickness>,
+    /// Stiffness of the spacing barrier in `k_b/ℓ²` \[–\], where it is fitted: how hard yarns press against each other before one
+    /// takes length from the other. Without, it is so stiff that legs, heads and sinkers keep their lengths.
+    pub spacing_stiffness: Option<f64>,
     /// Extra loop length per knit–purl change within a row \[–\].
     pub transition_length: f64,
     /// Wale spacing of relaxed stockinette `W/ℓ` \[–\].
@@ -119,6 +126,7 @@ impl Default for LoopProportions {
             spacing_leg: 0.2113,
             spacing_head_sinker: 0.0680,
             thickness: None,
+            spacing_stiffness: None,
             transition_length: 0.085,
             wale_spacing: 0.2993,
             course_spacing: 0.2578,
@@ -130,28 +138,33 @@ impl Default for LoopProportions {
 }
 
 impl LoopProportions {
-    /// Loops whose yarns lie beside each other at their contacts, fitted to measured swatches of eleven patterns.
+    /// Loops whose yarns lie beside each other at their contacts, fitted to measured swatches of eleven patterns. Relative to
+    /// stockinette their relaxed widths and heights come within 0.02 (root mean square of the logarithms), those of other patterns
+    /// within about 0.05; the example `knit_swatches` prints the tables.
     #[must_use]
     pub fn thick() -> Self {
         Self {
             stitch_length: 0.0979,
-            wrapping: 1.5166,
-            wrapping_angle_course: 0.8185,
-            wrapping_angle_leg: 0.5408,
-            bend_angle_foot_head: 0.4403,
-            bend_angle_leg: 1.2519,
-            spacing_leg: 0.3156,
-            spacing_head_sinker: 0.1055,
+            wrapping: 1.5796,
+            wrapping_angle_course: 1.5433,
+            wrapping_angle_leg: 0.8821,
+            bend_angle_foot_head: 0.5860,
+            bend_angle_leg: 1.3047,
+            spacing_leg: 0.3957,
+            spacing_head_sinker: 0.0937,
             thickness: Some(Thickness {
-                contact_distance: 0.0537,
-                leg_distance: 0.2477,
-                leg_stiffness: 184.3,
-                crossing_spacing: 0.8030,
+                contact_distance: 0.0527,
+                leg_distance: 0.2151,
+                leg_stiffness: 639.5,
+                crossing_spacing: 0.7345,
+                facing_distance: 0.3009,
             }),
-            transition_length: 0.085,
-            wale_spacing: 0.308,
-            course_spacing: 0.242,
-            path_ratio: 0.762,
+            spacing_stiffness: Some(93.35),
+            // The extra yarn of the masses, of which no corner is cut.
+            transition_length: 0.110,
+            wale_spacing: 0.2985,
+            course_spacing: 0.2430,
+            path_ratio: 0.773,
         }
     }
 
@@ -181,7 +194,10 @@ impl LoopProportions {
             bend_angle_foot_head: self.bend_angle_foot_head,
             bend_angle_leg: self.bend_angle_leg,
             length_stiffness: yarn.stretch_stiffness,
-            spacing_stiffness: Self::SPACING_TO_STRETCH * yarn.stretch_stiffness,
+            spacing_stiffness: match self.spacing_stiffness {
+                Some(stiffness) => stiffness * force,
+                None => Self::SPACING_TO_STRETCH * yarn.stretch_stiffness,
+            },
             spacing_leg: self.spacing_leg * loop_length,
             spacing_head_sinker: self.spacing_head_sinker * loop_length,
             thickness: self.thickness.map(|thickness| thickness.scaled(loop_length, force)),

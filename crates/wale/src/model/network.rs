@@ -229,8 +229,8 @@ impl Network {
             self.stack_start.push(u32::try_from(self.stack_pass.len()).expect("stack count fits 32 bits"));
         }
     }
-    /// The pass `step` (`±1`) further along the yarn, with the periodic image of its node relative to this pass's
-    /// node, and how many times the yarn closed on itself on the way (`−1`, `0`, `1`). `None` past an open end.
+    /// The pass so many steps further along the yarn, with the periodic image of its node relative to this pass's node, and how
+    /// many times the yarn closed on itself on the way. `None` past an open end.
     #[must_use]
     pub fn neighbour(&self, yarn: YarnId, pass: PassId, step: i32) -> Option<Neighbour> {
         let passes = self.yarn_passes(yarn);
@@ -239,13 +239,8 @@ impl Network {
         while step != 0 && (start..end).contains(&moved) && self.is_out(PassId(moved as u32)) {
             moved += i64::from(step.signum());
         }
-        let (index, turns) = if moved < start {
-            (moved + (end - start), -1)
-        } else if moved >= end {
-            (moved - (end - start), 1)
-        } else {
-            (moved, 0)
-        };
+        let turns = i16::try_from((moved - start).div_euclid(end - start)).ok()?;
+        let index = start + (moved - start).rem_euclid(end - start);
         let closure = match self.yarn_closure[yarn.index()] {
             Some((image, _)) => image,
             None if turns != 0 => return None,

@@ -105,6 +105,7 @@ fn fabric(scene: &Scene) -> Written<FabricText> {
             leg_distance: card.thickness.map(|thickness| of(thickness.leg_distance)).transpose()?,
             leg_stiffness: card.thickness.map(|thickness| of(thickness.leg_stiffness)).transpose()?,
             crossing_spacing: card.thickness.map(|thickness| of(thickness.crossing_spacing)).transpose()?,
+            facing_distance: card.thickness.map(|thickness| of(thickness.facing_distance)).transpose()?,
             chart: Some(chart(scene)),
             ..common
         }),

@@ -60,5 +60,5 @@ impl Start {
 /// Relaxes a repeat from several starts and returns the one of lowest energy.
 fn relax_repeat(tile: &Network, yarns: &Yarns, card: &KnitCard) -> TileEquilibrium {
     let starts = if tile.loops.len() > MANY_LOOPS { 1 } else { STARTS };
-    relax_from_starts(tile, yarns, card, &TileSettings::default(), starts).swap_remove(0)
+    relax_from_starts(tile, yarns, card, &TileSettings::of(card), starts).swap_remove(0)
 }

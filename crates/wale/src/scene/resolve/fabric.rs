@@ -102,6 +102,7 @@ fn overridden(mut card: KnitCard, text: &FabricText) -> KnitCard {
         set(&mut thickness.leg_distance, text.leg_distance);
         set(&mut thickness.leg_stiffness, text.leg_stiffness);
         set(&mut thickness.crossing_spacing, text.crossing_spacing);
+        set(&mut thickness.facing_distance, text.facing_distance);
     }
     set(&mut card.anchor_stiffness, text.anchor_stiffness);
     set(&mut card.residual_compression, text.residual_compression);
@@ -137,6 +138,7 @@ fn check(card: &KnitCard, said: &FabricText) -> Result<(), Complaint> {
         ("leg_distance", said.leg_distance.is_some()),
         ("leg_stiffness", said.leg_stiffness.is_some()),
         ("crossing_spacing", said.crossing_spacing.is_some()),
+        ("facing_distance", said.facing_distance.is_some()),
     ];
     match (card.thickness, of_thick.iter().find(|(_, given)| *given)) {
         (None, Some((key, _))) => {

@@ -78,6 +78,9 @@ pub struct FabricText {
     /// Of thick contacts: spacing of a strand that goes from face to face, over that of one that stays on a face.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crossing_spacing: Option<Quantity<Ratio, Positive>>,
+    /// Of thick contacts: distance of the middles of legs that meet where the wales between them fold away.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facing_distance: Option<Quantity<Length, NotNegative>>,
     /// Stiffness k_f of the springs that stand for sticking friction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub anchor_stiffness: Option<Quantity<ForcePerLength, Positive>>,
