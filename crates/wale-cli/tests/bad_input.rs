@@ -98,8 +98,8 @@ fn bad_charts_and_drafts_are_told_with_their_place() {
     let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), told(&output));
     assert!(said.contains("f1 was empty when it was knitted"), "{said}");
     for (name, code, words) in [
-        ("color-out-of-range.wif", 3, ["range.wif:17:", "0,0,1000"]),
-        ("two-values-for-one-thread.wif", 3, ["thread.wif:23:", "[THREADING]"]),
+        ("color-out-of-range.wif", 3, ["range.wif:18:", "0,0,1000"]),
+        ("two-values-for-one-thread.wif", 3, ["thread.wif:24:", "[THREADING]"]),
         ("four-billion-threads.wif", 4, ["threads.wif:12:", "4000000000"]),
         ("utf16.wif", 3, ["utf16.wif", "UTF-16"]),
         ("no-sections.wif", 3, ["no-sections.wif", "[WIF]"]),
