@@ -3,6 +3,7 @@
 mod common;
 
 use std::fs;
+use std::path::Path;
 
 use common::{Workshop, assert_fails, assert_succeeds, code, program, scene, told, wale};
 
@@ -65,6 +66,58 @@ fn bad_scenes_are_underlined() {
     assert_fails(&wale(&["check", &workshop.text("bad.toml")]), 3, &["UTF-8"]);
     assert_fails(&wale(&["check", &workshop.text("nowhere.toml")]), 3, &["nowhere.toml"]);
     assert_fails(&wale(&["check", &workshop.text("")]), 3, &[]);
+}
+
+/// Charts, programs, drafts and images beside a scene: a place in the file where it has lines, and the reason. The files are
+/// those of the readers' corpus.
+#[test]
+fn bad_charts_and_drafts_are_told_with_their_place() {
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../wale/tests/corpus");
+    let workshop = Workshop::new();
+    let chart = |key: &str, name: &str| format!("schema = 1\n[fabric.chart]\n{key} = \"{name}\"\n");
+    let weave = |name: &str| {
+        format!("schema = 1\n[fabric.weave]\nfile = \"{name}\"\nend_spacing = \"1 mm\"\npick_spacing = \"1 mm\"\n")
+    };
+    let check = |folder: &str, name: &str, text: String| {
+        fs::copy(corpus.join(folder).join(name), workshop.path(name)).unwrap();
+        fs::write(workshop.path("bad.toml"), text).unwrap();
+        wale(&["check", &workshop.text("bad.toml")])
+    };
+    for (name, words) in [
+        ("not-brought-in.k", ["not-brought-in.k:6:", "`inhook"]),
+        ("racked-out-of-range.k", ["range.k:5:", "1e300"]),
+        ("hook-never-released.k", ["released.k:3:", "`releasehook"]),
+        ("stacked.k", ["stacked.k:68:", "65"]),
+        ("no-magic.k", ["no-magic.k:1:", ";!knitout-2"]),
+    ] {
+        assert_fails(&check("knitout", name, chart("file", name)), 3, &words);
+    }
+    // A needle that is empty takes a tuck: no error, but worth a word.
+    let output = check("knitout", "empty-needles.k", chart("file", "empty-needles.k"));
+    assert_succeeds(&output);
+    let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), told(&output));
+    assert!(said.contains("f1 was empty when it was knitted"), "{said}");
+    for (name, code, words) in [
+        ("color-out-of-range.wif", 3, ["range.wif:18:", "0,0,1000"]),
+        ("two-values-for-one-thread.wif", 3, ["thread.wif:24:", "[THREADING]"]),
+        ("four-billion-threads.wif", 4, ["threads.wif:12:", "4000000000"]),
+        ("utf16.wif", 3, ["utf16.wif", "UTF-16"]),
+        ("no-sections.wif", 3, ["no-sections.wif", "[WIF]"]),
+    ] {
+        assert_fails(&check("wif", name, weave(name)), code, &words);
+    }
+    let name = "counts-do-not-close.knit";
+    assert_fails(&check("instructions", name, chart("file", name)), 3, &["close.knit:2:", "multiple"]);
+    let palette = "palette = { \"#ffffff\" = \"A\" }";
+    for (name, code, words) in [
+        ("billion-by-billion.png", 4, ["bad.toml:3:", "1000000000"]),
+        ("truncated.png", 3, ["bad.toml:3:", "truncated.png"]),
+        ("too-few-rows.png", 3, ["bad.toml:3:", "too-few-rows.png"]),
+        ("not-a-picture.png", 3, ["bad.toml:3:", "PNG"]),
+        ("rgb.png", 3, ["bad.toml", "#c03020"]),
+    ] {
+        assert_fails(&check("image", name, format!("{}{palette}\n", chart("image", name))), code, &words);
+    }
 }
 
 #[test]

@@ -2,19 +2,19 @@
 
 mod play;
 
-use play::{Played, play};
+use play::{Played, play_beside_others};
 use wale::simulation::Simulation;
 
 #[test]
 fn stockinette_curls_and_garter_lies_flat() {
-    let curl = play("stockinette-curl.toml");
+    let curl = play_beside_others("stockinette-curl.toml");
     println!("stockinette: {:?}, speed {:.1} mm/s", curl.last, 1e3 * curl.speed);
     assert!(curl.last.end_edges.wale_per_m > 50.0, "positive is to the front");
     assert!(curl.last.side_edges.course_per_m.abs() < 0.1 * curl.last.end_edges.wale_per_m, "a roll is straight");
     assert!(curl.speed < 0.02, "it is at rest, but for {} m/s", curl.speed);
     assert!(curl.last.extent_m[1] < 0.5 * curl.first.extent_m[1], "rolled up from both ends");
 
-    let garter = play("garter-flat.toml");
+    let garter = play_beside_others("garter-flat.toml");
     println!("garter: {:?}, speed {:.1} mm/s", garter.last, 1e3 * garter.speed);
     assert!(garter.last.curvature.wale_per_m.abs() < 0.05 * curl.last.end_edges.wale_per_m);
     assert!(garter.last.curvature.course_per_m.abs() < 0.05 * curl.last.end_edges.wale_per_m);
@@ -22,7 +22,7 @@ fn stockinette_curls_and_garter_lies_flat() {
 
 #[test]
 fn hanging_stockinette_rolls_to_the_front_below_and_to_the_back_beside() {
-    let hung = play("stockinette-hanging.toml");
+    let hung = play_beside_others("stockinette-hanging.toml");
     println!("hung: {:?}, speed {:.1} mm/s", hung.last, 1e3 * hung.speed);
     assert!(hung.last.end_edges.wale_per_m > 50.0, "positive is to the front");
     assert!(hung.last.side_edges.course_per_m < -20.0, "negative is to the back");
@@ -31,7 +31,7 @@ fn hanging_stockinette_rolls_to_the_front_below_and_to_the_back_beside() {
 
 #[test]
 fn the_sides_of_stockinette_roll_to_the_back() {
-    let sides = play("stockinette-sides.toml");
+    let sides = play_beside_others("stockinette-sides.toml");
     println!("held at both ends: {:?}, speed {:.1} mm/s", sides.last, 1e3 * sides.speed);
     assert!(sides.last.side_edges.course_per_m < -30.0, "negative is to the back");
     assert!(sides.last.curvature.wale_per_m.abs() < 0.2 * sides.last.side_edges.course_per_m.abs());
@@ -39,7 +39,7 @@ fn the_sides_of_stockinette_roll_to_the_back() {
 
 #[test]
 fn thick_contacts_roll_the_sides_of_stockinette_to_the_back() {
-    let thick = play("thick-contacts.toml");
+    let thick = play_beside_others("thick-contacts.toml");
     println!("thick contacts: {:?}, speed {:.1} mm/s", thick.last, 1e3 * thick.speed);
     assert!(thick.last.side_edges.course_per_m < -50.0, "negative is to the back");
     let stretch = thick.steps.iter().fold(0.0f64, |most, step| most.max(step.largest_stretch));
@@ -48,7 +48,7 @@ fn thick_contacts_roll_the_sides_of_stockinette_to_the_back() {
 
 #[test]
 fn a_rib_unfolds_then_slides_then_stretches() {
-    let rib = play("rib-stretch.toml");
+    let rib = play_beside_others("rib-stretch.toml");
     // Slopes of the force in the three regimes [N/m]: the grip moves 60 mm a second.
     let slope = |from: f64, to: f64| (rib.force_at(1, to / 60.0) - rib.force_at(1, from / 60.0)) / (1e-3 * (to - from));
     let (unfolding, sliding, stretching) = (slope(5.0, 30.0), slope(45.0, 80.0), slope(120.0, 150.0));
@@ -63,7 +63,7 @@ fn a_rib_unfolds_then_slides_then_stretches() {
 
 #[test]
 fn a_long_pull_leaves_a_set_and_a_small_one_none() {
-    let (long, small) = (play("permanent-set.toml"), play("small-pull.toml"));
+    let (long, small) = (play_beside_others("permanent-set.toml"), play_beside_others("small-pull.toml"));
     let widening = long.last.wale_spacing_m / small.last.wale_spacing_m - 1.0;
     println!(
         "wale spacing: {:.2} mm laid out, {:.2} mm after a small pull, {:.2} mm after a long one: {:+.1} %",
@@ -78,7 +78,7 @@ fn a_long_pull_leaves_a_set_and_a_small_one_none() {
 
 #[test]
 fn a_loop_of_loading_and_unloading_takes_work() {
-    let pulled = play("load-unload.toml");
+    let pulled = play_beside_others("load-unload.toml");
     let most = pulled.steps.iter().map(|step| step.grips[1].work).fold(0.0, f64::max);
     let left = pulled.steps.last().unwrap().grips[1].work;
     let (out, back) = (pulled.force_at(1, 0.7), pulled.force_at(1, 1.3));
@@ -92,7 +92,7 @@ fn a_loop_of_loading_and_unloading_takes_work() {
 
 #[test]
 fn garter_comes_to_rest_on_a_ball() {
-    let ball = play("garter-on-ball.toml");
+    let ball = play_beside_others("garter-on-ball.toml");
     println!("garter on a ball: {} steps, speed {:.2} mm/s, {:?}", ball.steps.len(), 1e3 * ball.speed, ball.last);
     assert!(ball.speed < 0.02, "{} m/s", ball.speed);
     assert!(ball.steps.last().unwrap().contacts > 100);
@@ -104,7 +104,7 @@ fn garter_comes_to_rest_on_a_ball() {
 fn rest_shape_compensation_keeps_the_size() {
     // Height of the hanging fabric at the end over that of its layout.
     let shrinkage = |played: &Played| 1.0 - played.last.extent_m[2] / played.first.extent_m[2];
-    let (with, without) = (play("rest-shape-with.toml"), play("rest-shape-without.toml"));
+    let (with, without) = (play_beside_others("rest-shape-with.toml"), play_beside_others("rest-shape-without.toml"));
     println!("shrinkage {:.1} % with, {:.1} % without", 100.0 * shrinkage(&with), 100.0 * shrinkage(&without));
     assert!(with.start.compensation.is_some() && without.start.compensation.is_none());
     assert!(shrinkage(&with).abs() < 0.03 && shrinkage(&without).abs() > 3.0 * shrinkage(&with).abs());
@@ -126,7 +126,7 @@ fn wave(simulation: &Simulation, row: u32, repeat: u32) -> f64 {
 
 #[test]
 fn feather_and_fan_waves() {
-    let lace = play("feather-and-fan.toml");
+    let lace = play_beside_others("feather-and-fan.toml");
     // Plain rows below and above the eyelets.
     let waves = [16, 17, 19].map(|row| wave(&lace.simulation, row, 18));
     println!("feather and fan: waves of {waves:.4?} m, speed {:.1} mm/s, {:?}", 1e3 * lace.speed, lace.last);
@@ -137,7 +137,7 @@ fn feather_and_fan_waves() {
 #[test]
 fn tucks_berries_and_stripes_lie_as_cloth() {
     for name in ["fishermans-rib.toml", "bramble.toml", "garter-stripes.toml"] {
-        let played = play(name);
+        let played = play_beside_others(name);
         let last = played.steps.last().unwrap();
         println!(
             "{name}: speed {:.1} mm/s, stretch {:.3}, {:?}",
@@ -154,7 +154,7 @@ fn tucks_berries_and_stripes_lie_as_cloth() {
 
 #[test]
 fn a_machines_program_becomes_cloth() {
-    let sampler = play("machine-sampler.toml");
+    let sampler = play_beside_others("machine-sampler.toml");
     let last = sampler.steps.last().unwrap();
     println!("sampler: speed {:.1} mm/s, stretch {:.3}, {:?}", 1e3 * sampler.speed, last.largest_stretch, sampler.last);
     assert!(last.largest_stretch < 1.2);

@@ -3,7 +3,7 @@
 mod play;
 
 use glam::DVec3;
-use play::{Played, play};
+use play::{Played, play_beside_others};
 use wale::model::{Network, PassId, YarnId, YarnRole};
 
 /// Energy of a kind at the step that ends nearest to a time \[J\].
@@ -20,7 +20,7 @@ fn out_of(network: &Network, yarn: usize) -> (usize, usize) {
 
 #[test]
 fn a_frame_that_closes_shears_the_weave_evenly() {
-    let played = play("picture-frame.toml");
+    let played = play_beside_others("picture-frame.toml");
     let card = played.scene.fabric.woven().unwrap();
     for time in [0.3_f64, 0.6, 1.0] {
         let angle = (50.0 * time).to_radians();
@@ -34,7 +34,7 @@ fn a_frame_that_closes_shears_the_weave_evenly() {
 
 #[test]
 fn a_strip_on_the_bias_gives_until_its_threads_lie_side_by_side() {
-    let played = play("bias-extension.toml");
+    let played = play_beside_others("bias-extension.toml");
     let force = |time: f64| played.step_at(time).grips[1].force.y;
     // Nearly straight at first, then many times as stiff.
     let (soft, hard) = (force(0.6) / 0.6, (force(2.0) - force(1.8)) / 0.2);
@@ -50,7 +50,7 @@ fn a_strip_on_the_bias_gives_until_its_threads_lie_side_by_side() {
 
 #[test]
 fn an_end_pulled_through_a_weave_leaves_work_behind() {
-    let played = play("yarn-pull.toml");
+    let played = play_beside_others("yarn-pull.toml");
     let force = |time: f64| played.step_at(time).grips[2].force.y;
     // Sliding, each of fifteen picks holds it with μ λ.
     let card = played.scene.fabric.woven().unwrap();
@@ -67,7 +67,7 @@ fn an_end_pulled_through_a_weave_leaves_work_behind() {
 
 #[test]
 fn a_snag_stays_and_draws_its_ends_in() {
-    let played = play("snag.toml");
+    let played = play_beside_others("snag.toml");
     let (network, frame) = (played.simulation.network(), played.frame());
     let middle = &network.loops.iter().find(|info| (info.row, info.column) == (12, 12)).unwrap().nodes;
     let node = middle[0].index();
@@ -82,7 +82,7 @@ fn a_snag_stays_and_draws_its_ends_in() {
 
 #[test]
 fn picks_drawn_out_of_an_edge_leave_a_fringe() {
-    let played = play("frayed-edge.toml");
+    let played = play_beside_others("frayed-edge.toml");
     let network = played.simulation.network();
     let wefts: Vec<usize> = (0..network.yarn_count()).filter(|&y| network.yarn_role[y] == YarnRole::Weft).collect();
     assert_eq!(out_of(network, wefts[0]), (0, 16));
@@ -95,7 +95,7 @@ fn picks_drawn_out_of_an_edge_leave_a_fringe() {
 
 #[test]
 fn a_row_is_pulled_out_whole() {
-    let played = play("row-pull-out.toml");
+    let played = play_beside_others("row-pull-out.toml");
     let (network, frame) = (played.simulation.network(), played.frame());
     let row = (0..network.yarn_count()).find(|&y| network.yarn_kind[y] == 1).unwrap();
     assert_eq!(out_of(network, row).0, 0, "contacts are left");
@@ -114,7 +114,7 @@ fn a_row_is_pulled_out_whole() {
 
 #[test]
 fn a_weave_on_a_ball_shears() {
-    let played = play("weave-drape.toml");
+    let played = play_beside_others("weave-drape.toml");
     let (network, frame) = (played.simulation.network(), played.frame());
     assert!(played.steps.iter().all(|step| step.largest_stretch < 1.02));
     let yarn_of = network.pass_yarn();

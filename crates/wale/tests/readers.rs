@@ -1,37 +1,41 @@
-//! No text makes a reader panic: the kept corpus, cut short at every byte and spoilt in many ways.
+//! No bytes make a reader panic: the kept corpus, cut short in many places and spoilt in many ways.
+//!
+//! What broke a reader once, or its fuzz target (`tools/fuzz`), lies in the corpus.
+
+mod reading;
 
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use wale::pattern::instructions::read_instructions;
-use wale::pattern::symbols::{default_legend, read_symbols};
-use wale::scene::Scene;
+/// Longest that one file may take to be read; most of them are small, and the slowest ask for the largest charts.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// Most memory that the reading of one file may hold at a time \[bytes\]: the largest chart and its yarns.
+const MOST_MEMORY: u64 = 2 << 30;
 
 fn corpus(kind: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(kind);
-    let files: Vec<_> = std::fs::read_dir(&folder)
+    let mut files: Vec<_> = std::fs::read_dir(&folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .map(|path| (path.clone(), std::fs::read(path).unwrap()))
         .collect();
     assert!(files.len() >= 3, "the corpus of {kind} is gone");
+    files.sort();
     files
 }
 
-/// The text itself, its beginnings, and texts with bytes exchanged for others of the same text or of a few signs.
-fn spoilt(bytes: &[u8]) -> Vec<String> {
-    let mut texts = vec![String::from_utf8_lossy(bytes).into_owned()];
+/// The beginnings of some bytes, and the bytes with some exchanged for others of the same file or of a few signs.
+fn spoilt(bytes: &[u8]) -> impl Iterator<Item = Vec<u8>> + '_ {
     let stride = bytes.len() / 200 + 1;
-    for end in (0..bytes.len()).step_by(stride) {
-        texts.push(String::from_utf8_lossy(&bytes[..end]).into_owned());
-    }
+    let beginnings = (0..bytes.len()).step_by(stride).map(|end| bytes[..end].to_vec());
     // A small generator of our own keeps every run the same [Knuth, MMIX].
     let mut state = 1_u64;
-    let mut random = |limit: usize| {
+    let mut random = move |limit: usize| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % limit.max(1)
     };
     let signs = b"*[](),;:#\"'{}=.-9kp\n\0\xff";
-    for _ in 0..300 {
+    let exchanged = (0..300).map(move |_| {
         let mut copy = bytes.to_vec();
         for _ in 0..=random(4) {
             let (at, from) = (random(copy.len()), random(copy.len()));
@@ -42,66 +46,66 @@ fn spoilt(bytes: &[u8]) -> Vec<String> {
                 _ => copy.insert(at, signs[random(signs.len())]),
             }
         }
-        texts.push(String::from_utf8_lossy(&copy).into_owned());
+        copy
+    });
+    beginnings.chain(exchanged)
+}
+
+/// Reads a corpus and what becomes of it; at least so many are read, and so many refused.
+fn check(kind: &str, reader: fn(&[u8]) -> bool, [least_read, least_refused]: [usize; 2]) {
+    let (mut read, mut refused) = (0, 0);
+    for (path, bytes) in corpus(kind) {
+        let began = Instant::now();
+        let memory = allocation_counter::measure(|| {
+            reader(&bytes);
+        });
+        assert!(began.elapsed() < PATIENCE, "{} took {:?}", path.display(), began.elapsed());
+        assert!(memory.bytes_max < MOST_MEMORY, "{} took {} bytes", path.display(), memory.bytes_max);
+        for bytes in std::iter::once(bytes.clone()).chain(spoilt(&bytes)) {
+            let answer = std::panic::catch_unwind(|| reader(&bytes));
+            let answer = answer.unwrap_or_else(|_| panic!("{}: {}", path.display(), String::from_utf8_lossy(&bytes)));
+            *if answer { &mut read } else { &mut refused } += 1;
+        }
     }
-    texts
+    assert!(read >= least_read && refused >= least_refused, "{kind}: {read} read, {refused} refused");
 }
 
 #[test]
 fn scenes_are_read_or_refused_with_a_place_inside_the_text() {
-    let (mut read, mut refused) = (0, 0);
-    for (path, bytes) in corpus("scene") {
-        for text in spoilt(&bytes) {
-            match Scene::from_text(&text, "scene.toml") {
-                Ok(_) => read += 1,
-                Err(error) => {
-                    assert!(!error.what().is_empty(), "{}", path.display());
-                    if let Some((line, _)) = error.line_and_column() {
-                        assert!(line <= text.matches('\n').count() + 1);
-                    }
-                    refused += 1;
-                }
-            }
-        }
-        // Files that are not text are refused, too.
-        let _ = Scene::read(&path);
+    check("scene", reading::scene, [100, 100]);
+    // Files that are not text are refused, too.
+    for (path, _) in corpus("scene") {
+        let _ = wale::scene::Scene::read(&path);
     }
-    assert!(read > 100 && refused > 100, "{read} read, {refused} refused");
 }
 
 #[test]
 fn instructions_are_read_or_refused_with_a_place_inside_the_text() {
-    let (mut read, mut refused) = (0, 0);
-    for (path, bytes) in corpus("instructions") {
-        for text in spoilt(&bytes) {
-            match read_instructions(&text, Some(8)) {
-                Ok(_) => read += 1,
-                Err(error) => {
-                    assert!(text.get(error.span.clone()).is_some(), "{}: {error}", path.display());
-                    refused += 1;
-                }
-            }
-        }
-    }
-    assert!(read > 20 && refused > 100, "{read} read, {refused} refused");
+    check("instructions", reading::instructions, [20, 100]);
 }
 
 #[test]
 fn symbols_are_read_or_refused_with_a_place_inside_the_line() {
-    let (mut read, mut refused) = (0, 0);
-    for (_, bytes) in corpus("symbols") {
-        for text in spoilt(&bytes) {
-            let lines: Vec<&str> = text.lines().collect();
-            match read_symbols(&lines, &default_legend()) {
-                Ok(_) => read += 1,
-                Err(error) => {
-                    if let Some(bytes) = error.bytes {
-                        assert!(lines[error.line].get(bytes).is_some());
-                    }
-                    refused += 1;
-                }
-            }
-        }
-    }
-    assert!(read > 10 && refused > 100, "{read} read, {refused} refused");
+    check("symbols", reading::symbols, [10, 100]);
+}
+
+#[test]
+fn programs_of_machines_are_read_or_refused_with_a_place_inside_the_text() {
+    check("knitout", reading::knitout, [100, 100]);
+}
+
+#[test]
+fn drafts_are_read_or_refused_with_a_place_inside_the_text() {
+    check("wif", reading::wif, [100, 100]);
+}
+
+#[test]
+fn images_are_read_or_refused() {
+    check("image", reading::image, [20, 100]);
+}
+
+#[test]
+fn checkpoints_and_frames_are_read_or_refused() {
+    check("checkpoint", reading::saved, [1, 100]);
+    check("saved", reading::saved, [10, 100]);
 }

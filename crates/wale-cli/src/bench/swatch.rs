@@ -5,6 +5,7 @@ use std::time::Instant;
 use serde::Serialize;
 use wale::model::LinearSolver;
 use wale::pattern::named::named_pattern;
+use wale::pattern::{Chart, Stitch};
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start};
 use wale_numerics::block_matrix::BlockMatrix;
@@ -50,19 +51,8 @@ pub struct Measured {
 /// # Errors
 /// When a step fails.
 pub fn measure(pattern: &str, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
-    let mut scene = scene(pattern, nodes)?;
-    scene.plan.simulation.linear_solver = solver;
-    scene.plan.simulation.largest_step = WARM_UP_STEP;
-    let began = Instant::now();
-    let mut simulation = simulation(&scene);
-    let set_up_s = began.elapsed().as_secs_f64();
+    let Falling { mut scene, mut simulation, set_up_s } = falling(pattern, nodes, solver)?;
     let node_count = simulation.network().node_count();
-    while simulation.state().time < WARM_UP {
-        step(&mut simulation)?;
-    }
-    scene.plan.simulation.largest_step = STEP;
-    simulation = going_on(&scene, simulation);
-    step(&mut simulation)?;
     let (mut newton, mut linear) = (0, 0);
     let began = Instant::now();
     for _ in 0..steps {
@@ -89,6 +79,58 @@ pub fn measure(pattern: &str, nodes: u32, steps: usize, solver: LinearSolver) ->
         product_bytes_per_s: product(&simulation),
         peak_memory_bytes,
     })
+}
+
+/// A swatch in free fall whose edges have settled.
+pub struct Falling {
+    scene: Scene,
+    simulation: Simulation,
+    set_up_s: f64,
+}
+
+/// Lets a swatch fall until its edges have settled, and a step of those that are measured.
+///
+/// # Errors
+/// When there is no such pattern, or a step fails.
+pub fn falling(pattern: &str, nodes: u32, solver: LinearSolver) -> Result<Falling, Failure> {
+    let mut scene = scene(pattern, nodes)?;
+    scene.plan.simulation.linear_solver = solver;
+    scene.plan.simulation.largest_step = WARM_UP_STEP;
+    let began = Instant::now();
+    let mut simulation = simulation(&scene);
+    let set_up_s = began.elapsed().as_secs_f64();
+    while simulation.state().time < WARM_UP {
+        step(&mut simulation)?;
+    }
+    scene.plan.simulation.largest_step = STEP;
+    simulation = going_on(&scene, simulation);
+    step(&mut simulation)?;
+    Ok(Falling { scene, simulation, set_up_s })
+}
+
+impl Falling {
+    /// Nodes.
+    pub fn nodes(&self) -> usize {
+        self.simulation.network().node_count()
+    }
+
+    /// The stitches that are worked: all, and those of them that are no knits and no purls.
+    pub fn stitches(&self) -> [usize; 2] {
+        let rows = self.scene.structure.chart().map_or(&[][..], Chart::rows);
+        let all = rows.iter().map(Vec::len).sum();
+        let plain = |stitch: &&Stitch| matches!(stitch, Stitch::Knit | Stitch::Purl);
+        [all, all - rows.iter().flatten().filter(plain).count()]
+    }
+
+    /// Wall time of the next step \[s\], its Newton iterations, and those of the linear solver.
+    ///
+    /// # Errors
+    /// When it fails.
+    pub fn timed_step(&mut self) -> Result<(f64, [usize; 2]), Failure> {
+        let began = Instant::now();
+        let report = step(&mut self.simulation)?;
+        Ok((began.elapsed().as_secs_f64(), [report.newton_iterations, report.linear_iterations]))
+    }
 }
 
 /// A simulation with another plan that goes on where one stands; never two at a time.

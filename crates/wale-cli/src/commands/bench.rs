@@ -4,6 +4,7 @@ use serde_json::json;
 use wale::model::LinearSolver;
 
 use crate::arguments::{Bench, Subject};
+use crate::bench::patterns::compare;
 use crate::bench::swatch::{Measured, lay_out, measure};
 use crate::bench::triad;
 use crate::exit::Failure;
@@ -17,8 +18,10 @@ const STEPS: usize = 60;
 /// Steps that a solver is measured for.
 const SOLVER_STEPS: usize = 20;
 
-/// Patterns that are compared: plain, yarn-overs and decreases, tucks, increases and deep stacks, several yarns.
-const PATTERNS: [&str; 6] = ["garter", "stockinette", "mesh", "fisherman's rib", "bramble", "stranded check"];
+/// Patterns that are compared with the first: plain, yarn-overs and decreases (half of all stitches, and fewer), tucks, increases
+/// and deep stacks, several yarns.
+const PATTERNS: [&str; 7] =
+    ["stockinette", "garter", "mesh", "feather and fan", "fisherman's rib", "bramble", "stranded check"];
 /// Loops that are laid out.
 const LOOPS: u32 = 100_000;
 
@@ -71,35 +74,42 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
-    let mut measured = Vec::new();
-    for pattern in PATTERNS {
-        let laid_out = lay_out(pattern, LOOPS)?;
-        measured.push((
-            pattern,
-            laid_out,
-            told(arguments, pattern, arguments.nodes / 3, STEPS, LinearSolver::Automatic)?,
-        ));
+    let laid_out = PATTERNS.iter().map(|pattern| lay_out(pattern, LOOPS)).collect::<Result<Vec<_>, _>>()?;
+    if !arguments.manner.quiet {
+        note(&format!("{} swatches falling on spheres, a step of each in turn …", PATTERNS.len()));
     }
+    let compared = compare(&PATTERNS, arguments.nodes / 3, STEPS)?;
     if arguments.json {
-        let list: Vec<_> = measured
+        let list: Vec<_> = compared
             .iter()
-            .map(|(pattern, (seconds, loops), swatch)| {
-                json!({ "pattern": pattern, "layout_loops": loops, "layout_s": seconds, "swatch": swatch })
-            })
+            .zip(&laid_out)
+            .map(|(swatch, (seconds, loops))| json!({ "layout_loops": loops, "layout_s": seconds, "swatch": swatch }))
             .collect();
         return output::json(&json!({ "threads": threads, "patterns": list }));
     }
-    say!("swatches falling on a sphere, steps of 1 ms on {threads} threads:")?;
-    say!("  pattern                  nodes   node·steps/s   to garter   Newton   linear   layout of 100,000 loops")?;
-    let garter = measured[0].2.node_steps_per_s;
-    for (pattern, (seconds, loops), swatch) in &measured {
+    say!(
+        "swatches falling on spheres, a step of 1 ms of each in turn, on {threads} threads; a stitch against one of {}:",
+        PATTERNS[0]
+    )?;
+    say!(
+        "                       stitches    nodes  node·steps/s  Newton  linear  a step for      of them   one of    an iteration  layout of"
+    )?;
+    say!(
+        "  pattern                                                               a stitch   yo, dec, …  these costs   for a stitch  100,000 loops"
+    )?;
+    for (swatch, (seconds, loops)) in compared.iter().zip(&laid_out) {
         say!(
-            "  {pattern:<20} {:>9} {:>14} {:>11.2} {:>8.1} {:>8.1} {:>25}",
+            "  {:<20} {:>8} {:>8} {:>13} {:>7.1} {:>7.1} {:>11.2} {:>10.0} % {:>12} {:>14.2} {:>14}",
+            swatch.pattern,
+            grouped(swatch.stitches as u64),
             grouped(swatch.nodes as u64),
             grouped(swatch.node_steps_per_s as u64),
-            swatch.node_steps_per_s / garter,
             swatch.newton_iterations,
             swatch.linear_iterations,
+            swatch.stitch_cost,
+            100.0 * swatch.special_part,
+            swatch.special_cost.map_or_else(|| "–".to_owned(), |cost| format!("{cost:.2}")),
+            swatch.iteration_cost,
             span(seconds * f64::from(LOOPS) / *loops as f64)
         )?;
     }

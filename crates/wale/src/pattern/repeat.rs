@@ -118,11 +118,10 @@ fn leaves(row: &[Stitch]) -> usize {
     row.iter().map(|stitch| stitch.leaves()).sum()
 }
 
-/// Smallest period of a sequence of length `n ≥ 1` that divides it or fits in it twice.
+/// Length of the longest border (a proper prefix that is also a suffix) of every beginning of a sequence of length `n`.
 ///
-/// The failure function of Knuth, Morris and Pratt: every period of the sequence is `n` less the length of a border
-/// (a proper prefix that is also a suffix), and all borders lie on the chain of failures. Linear in comparisons.
-fn smallest_period(n: usize, equal: impl Fn(usize, usize) -> bool) -> usize {
+/// The failure function of Knuth, Morris and Pratt: linear in comparisons.
+pub(super) fn borders(n: usize, equal: impl Fn(usize, usize) -> bool) -> Vec<usize> {
     let mut border = vec![0_usize; n];
     for i in 1..n {
         let mut length = border[i - 1];
@@ -131,6 +130,13 @@ fn smallest_period(n: usize, equal: impl Fn(usize, usize) -> bool) -> usize {
         }
         border[i] = length + usize::from(equal(i, length));
     }
+    border
+}
+
+/// Smallest period of a sequence of length `n ≥ 1` that divides it or fits in it twice: every period is `n` less the length
+/// of a border, and all borders lie on a chain.
+fn smallest_period(n: usize, equal: impl Fn(usize, usize) -> bool) -> usize {
+    let border = borders(n, equal);
     let mut length = border[n - 1];
     loop {
         let period = n - length;

@@ -9,7 +9,7 @@ use wale::model::Frame;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start, StepReport};
 
-/// One scene at a time: each uses all processors.
+/// One scene at a time uses all processors.
 static ALONE: Mutex<()> = Mutex::new(());
 
 /// A scene from its first to its last step.
@@ -26,9 +26,20 @@ pub struct Played {
     pub speed: f64,
 }
 
-/// Runs a scene of the folder `scenes`.
+/// Runs a scene of the folder `scenes` on all processors, when no other runs so.
 pub fn play(name: &str) -> Played {
     let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    to_its_end(name)
+}
+
+/// Runs a scene of the folder `scenes` on one processor, beside those of other tests: small fabrics gain little from several,
+/// and move alike on any number.
+pub fn play_beside_others(name: &str) -> Played {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| to_its_end(name))
+}
+
+fn to_its_end(name: &str) -> Played {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let scene = Scene::read(&path).unwrap();
     let compensate = scene.plan.simulation.rest_shape_compensation;

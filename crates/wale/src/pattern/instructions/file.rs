@@ -38,6 +38,8 @@ struct Reader {
     round: Option<bool>,
     bodies: Vec<Body>,
     rows: Vec<Rows>,
+    /// The last row so far.
+    last: u64,
     /// The first line that says its side: the row's number, and the side.
     side: Option<(u64, Side)>,
     yarns: Yarns,
@@ -109,6 +111,7 @@ impl Reader {
             let place = line.place();
             let (first, last) = range(line)?;
             self.rows.push(Rows { first, last, body, place });
+            self.last = self.last.max(last);
             line.row.get_or_insert(first);
             if !(line.take_sign(',') | line.take_word(&["and"])) {
                 break;
@@ -208,8 +211,9 @@ impl Reader {
             return Err(line.expected("the end of the line"));
         }
         // Counts are at most 16 million each, their product far below 2⁶⁴; `finish` limits the sum.
-        let before = self.rows.iter().map(|rows| rows.last).max().unwrap_or(0);
+        let before = self.last;
         let after = before.saturating_add((last - first + 1) * times);
+        self.last = after;
         self.rows.push(Rows { first: before + 1, last: after, body: self.bodies.len(), place });
         self.bodies.push(Body::Again { first, last });
         Ok(())

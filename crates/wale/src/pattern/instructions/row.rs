@@ -317,7 +317,8 @@ fn times(line: &mut Line<'_>) -> Parsed<Option<u64>> {
 
 /// Stitches that parts to be repeated take; none of them may stretch.
 fn fixed_count(line: &Line<'_>, parts: &[Part], start: usize) -> Parsed<u64> {
-    if parts.is_empty() {
+    // Yarns that are changed and never knitted with are nothing, too, however often.
+    if parts.iter().all(|part| matches!(part.kind, PartKind::With(_))) {
         return Err(line.error_at(start..line.end_of_last(), Reason::NothingToRepeat));
     }
     let mut sum = 0_u64;

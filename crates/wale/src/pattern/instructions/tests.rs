@@ -238,3 +238,15 @@ fn lace_is_read_as_knitters_write_it() {
     assert_eq!(drawn, ["kkkkkkk/o\\okkkkkkk", "///kokokokokoko///"]);
     assert_eq!(read_instructions(&write_instructions(&written.chart, written.working), None).unwrap(), written);
 }
+
+#[test]
+fn changing_yarns_over_and_over_is_nothing_to_repeat() {
+    for row in
+        ["[with B] 16000000 times, k4", "[[with B, with A] 9999999 times] 9999999 times, k4", "*with B* 3 times, k4"]
+    {
+        let (message, place) = refused(&format!("Cast on 4\nRow 1: {row}\n"));
+        assert_eq!(message, "row 1: there is nothing to repeat", "{row}");
+        assert!(place.contains("with B"), "{place}");
+    }
+    assert!(read_instructions("Cast on 4\nRow 1: [with B, k1, with A, k1] 2 times\n", None).is_ok());
+}

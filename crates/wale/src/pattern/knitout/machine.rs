@@ -4,64 +4,67 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::beds::{Bed, Needle, Needles};
 use super::program::{Operation, Place, Program};
-use super::{KnitoutError, KnitoutErrorReason as Reason, Knitted, Remark};
+use super::{KnitoutError, KnitoutErrorReason as Reason, Knitted, MOST_YARNS, Remark};
 use crate::pattern::chart::Chart;
-use crate::pattern::loops::{Form, Form2d, Held, Loop, LoopGraph, LoopId, Onward, Stop, Strand};
-
-/// How far in front of the middle a loop of the front bed lies, in columns, and behind it one of the back bed.
-const BED: f64 = 0.3;
-/// How far beside its last loop a carrier turns, in columns.
-const TURN: f64 = 0.85;
+use crate::pattern::loops::Form;
 
 /// A loop as the machine makes it.
-struct Made {
-    form: Form,
-    bed: Bed,
+pub(super) struct Made {
+    pub form: Form,
+    pub bed: Bed,
     /// In needles of the front bed.
-    x: f64,
-    row: i32,
+    pub x: f64,
+    pub row: i32,
     /// The loops that it is drawn through, front to back.
-    parents: Vec<usize>,
-    rightward: bool,
-    place: Place,
+    pub parents: Vec<usize>,
+    pub rightward: bool,
+    pub place: Place,
 }
 
 /// A yarn that is in.
+#[derive(Default)]
 struct Fed {
     loops: Path,
+    /// Whether one of its loops was drawn through another: before, it casts on.
+    worked: bool,
 }
 
 /// Loops of a yarn in the order in which they were made, and how many places of needles that hold loops lay between each
 /// and the one before.
-type Path = Vec<(usize, u32)>;
+pub(super) type Path = Vec<(usize, u32)>;
 
-struct Machine {
+pub(super) struct Machine {
     rack: f64,
     needles: Needles,
-    made: Vec<Made>,
+    pub made: Vec<Made>,
     /// Carriers that are in, and the line that brought them.
     carriers: BTreeMap<String, usize>,
     hook: Option<(Vec<String>, usize)>,
     /// Yarns in work, by the carriers that feed them together.
     fed: BTreeMap<Vec<String>, Fed>,
     /// Yarns that are done, with their carriers.
-    done: Vec<(Vec<String>, Path)>,
-    remarks: Vec<Remark>,
-    /// Needles that were empty when they were knitted, after loops had been there or beside them.
+    pub done: Vec<(Vec<String>, Path)>,
+    /// The carriers of every yarn that has made a loop.
+    known: BTreeSet<Vec<String>>,
+    pub remarks: Vec<Remark>,
+    /// How many needles were empty when they were knitted, after their yarn had made stitches, and the first of them.
     empty: usize,
+    first_empty: Option<(Needle, usize)>,
 }
 
 pub(super) fn knit(program: &Program) -> Result<Knitted, KnitoutError> {
     let mut machine = Machine {
         rack: 0.0,
-        needles: Needles::new(),
+        needles: Needles::default(),
         made: Vec::new(),
         carriers: BTreeMap::new(),
         hook: None,
         fed: BTreeMap::new(),
         done: Vec::new(),
+        known: BTreeSet::new(),
         remarks: program.remarks.clone(),
         empty: 0,
+        first_empty: None,
     };
     for line in &program.lines {
         machine.check_carriers(&line.operation, program.carriers.as_deref(), &line.place)?;
@@ -80,15 +83,17 @@ pub(super) fn knit(program: &Program) -> Result<Knitted, KnitoutError> {
         machine.remarks.push(Remark { line: end.line, what });
         machine.done.push((carriers, fed.loops));
     }
-    if machine.empty > 0 {
-        let what = format!(
-            "{} needles were empty when they were knitted: the yarn is laid over them, as a tuck lays it",
-            machine.empty
-        );
-        machine.remarks.push(Remark { line: 1, what });
+    if let Some((needle, line)) = machine.first_empty {
+        let others = match machine.empty - 1 {
+            0 => String::new(),
+            others => format!(", as were {others} after it"),
+        };
+        let what =
+            format!("{needle} was empty when it was knitted{others}: the yarn is laid over it, as a tuck lays it");
+        machine.remarks.push(Remark { line, what });
     }
     machine.check_cables()?;
-    machine.graph()
+    Ok(machine.graph())
 }
 
 impl Machine {
@@ -111,10 +116,7 @@ impl Machine {
         let Some(known) = known else { return Ok(()) };
         match named.iter().find(|carrier| !known.contains(carrier)) {
             None => Ok(()),
-            Some(carrier) => {
-                let carrier = crate::pattern::instructions::shortened(carrier);
-                Err(place.error(Reason::Carrier { carrier, known: known.join(" ") }))
-            }
+            Some(carrier) => Err(place.error(Reason::Carrier { carrier: carrier.clone(), known: known.join(" ") })),
         }
     }
 
@@ -145,37 +147,42 @@ impl Machine {
                 Ok(())
             }
             Operation::Knit { rightward, needle, carriers } => {
-                let held = self.needles.remove(needle).unwrap_or_default();
+                let held = self.needles.take(*needle);
                 let id = self.draw(*needle, &held, *rightward, carriers, place)?;
-                self.needles.insert(*needle, vec![id]);
-                Ok(())
+                self.lay(*needle, [id], place)
             }
             Operation::Tuck { rightward, needle, carriers } => {
                 let id = self.make(*needle, Form::Open, Vec::new(), *rightward, carriers, place)?;
-                self.needles.entry(*needle).or_default().push(id);
-                Ok(())
+                self.lay(*needle, [id], place)
             }
             Operation::Split { rightward, needle, to, carriers } => {
                 self.check_facing(*needle, *to, place)?;
-                let held = self.needles.remove(needle).unwrap_or_default();
+                let held = self.needles.take(*needle);
                 let id = self.draw(*needle, &held, *rightward, carriers, place)?;
-                self.needles.insert(*needle, vec![id]);
-                self.needles.entry(*to).or_default().extend(held);
-                Ok(())
+                self.lay(*needle, [id], place)?;
+                self.lay(*to, held, place)
             }
             Operation::Miss { carriers } => self.check_in(carriers, place),
             Operation::Transfer { from, to } => {
                 self.check_facing(*from, *to, place)?;
-                if let Some(held) = self.needles.remove(from) {
-                    self.needles.entry(*to).or_default().extend(held);
-                }
-                Ok(())
+                let held = self.needles.take(*from);
+                self.lay(*to, held, place)
             }
             Operation::Drop { needle } => {
-                self.needles.remove(needle);
+                self.needles.take(*needle);
                 Ok(())
             }
         }
+    }
+
+    fn lay(
+        &mut self,
+        needle: Needle,
+        loops: impl IntoIterator<Item = usize>,
+        place: &Place,
+    ) -> Result<(), KnitoutError> {
+        let laid = self.needles.lay(needle, loops);
+        laid.map_err(|loops| place.error(Reason::Stacked { needle: needle.to_string(), loops }))
     }
 
     fn out(&mut self, carriers: &[String], hook: bool, place: &Place) -> Result<(), KnitoutError> {
@@ -247,11 +254,10 @@ impl Machine {
         let knit = needle.bed.is_front();
         if held.is_empty() {
             // The first loops of a carrier are a cast-on; later ones are yarn-overs or slips of the program.
-            let cast_on = self
-                .fed
-                .get(carriers)
-                .is_none_or(|fed| fed.loops.iter().all(|(id, _)| self.made[*id].form == Form::Open));
-            self.empty += usize::from(!cast_on);
+            if self.fed.get(carriers).is_some_and(|fed| fed.worked) {
+                self.empty += 1;
+                self.first_empty.get_or_insert((needle, place.line));
+            }
             return self.make(needle, Form::Open, Vec::new(), rightward, carriers, place);
         }
         if held.len() > Chart::MOST_STACKED {
@@ -286,148 +292,19 @@ impl Machine {
         let last = self.fed.get(carriers).and_then(|fed| fed.loops.last()).map(|(id, _)| &self.made[*id]);
         // A loop lies a row above what it is drawn through or laid beside; one over an empty needle lies in the row of the
         // loop before it.
-        let below = parents.iter().chain(self.needles.get(&needle).into_iter().flatten());
+        let below = parents.iter().chain(self.needles.on(needle));
         let row = below.map(|id| self.made[*id].row + 1).max();
         let row = row.or(last.map(|last| last.row)).unwrap_or(0);
-        let over = last.map_or(0, |last| self.between(last.x, x, needle.bed));
+        // The yarn floats past what hangs between its last loop and this one.
+        let over = last.map_or(0, |last| self.needles.between(last.x.min(x), last.x.max(x), needle.bed, self.rack));
         let id = self.made.len();
         self.made.push(Made { form, bed: needle.bed, x, row, parents, rightward, place: place.clone() });
-        let fed = self.fed.entry(carriers.to_vec()).or_insert_with(|| Fed { loops: Vec::new() });
+        if !self.fed.contains_key(carriers) && self.known.insert(carriers.to_vec()) && self.known.len() > MOST_YARNS {
+            return Err(place.error(Reason::TooManyYarns));
+        }
+        let fed = self.fed.entry(carriers.to_vec()).or_default();
         fed.loops.push((id, over));
+        fed.worked |= form != Form::Open;
         Ok(id)
-    }
-
-    /// Needles of a bed that hold loops between two places: the yarn floats past them.
-    fn between(&self, a: f64, b: f64, bed: Bed) -> u32 {
-        let (low, high) = (a.min(b), a.max(b));
-        let from = Needle { bed, index: low.floor() as i32 - 16 };
-        let to = Needle { bed, index: high.ceil() as i32 + 16 };
-        let inside = |needle: &&Needle| {
-            let x = needle.place(self.rack);
-            x > low + 1e-9 && x < high - 1e-9
-        };
-        let count = self.needles.range(from..=to).map(|(needle, _)| needle).filter(inside).count();
-        u32::try_from(count).unwrap_or(u32::MAX)
-    }
-
-    /// Refuses neighbours of a bed that lie the other way round than the loops that they are drawn through.
-    fn check_cables(&self) -> Result<(), KnitoutError> {
-        for (_, path) in &self.done {
-            let drawn: Vec<&Made> =
-                path.iter().map(|(id, _)| &self.made[*id]).filter(|made| !made.parents.is_empty()).collect();
-            for pair in drawn.windows(2) {
-                let (first, second) = (pair[0], pair[1]);
-                if first.rightward != second.rightward || first.bed != second.bed {
-                    continue;
-                }
-                let (left, right) = if first.x <= second.x { (first, second) } else { (second, first) };
-                let xs = |made: &Made| made.parents.iter().map(|id| self.made[*id].x).collect::<Vec<_>>();
-                let of_left = xs(left).into_iter().fold(f64::INFINITY, f64::min);
-                let of_right = xs(right).into_iter().fold(f64::NEG_INFINITY, f64::max);
-                // Crossed for certain where even the leftmost of the left lies right of the rightmost of the right.
-                if left.x + 1e-9 < right.x && of_left > of_right + 1e-9 {
-                    return Err(second.place.error(Reason::Cable { other: first.place.line }));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn graph(mut self) -> Result<Knitted, KnitoutError> {
-        // Columns are the places where loops were ever made, so that needles left empty take no room.
-        let grain = |x: f64| x.floor() as i64;
-        let used: BTreeSet<i64> = self.made.iter().map(|made| grain(made.x)).collect();
-        let column: BTreeMap<i64, u32> = used.into_iter().zip(0..).collect();
-        let lowest = self.made.iter().map(|made| made.row).min().unwrap_or(0);
-        let rows = self.made.iter().map(|made| made.row).max().unwrap_or(0) - lowest + 1;
-        let mut order: Vec<usize> = (0..self.made.len()).collect();
-        order.sort_by_key(|id| {
-            let made = &self.made[*id];
-            (made.row, column[&grain(made.x)], made.bed)
-        });
-        let mut renamed = vec![LoopId(0); order.len()];
-        for (at, id) in order.iter().enumerate() {
-            renamed[*id] = LoopId::new(at);
-        }
-        let held = |id: &usize| Held { of: renamed[*id], image: [0; 2] };
-        let place_of = |made: &Made| [f64::from(column[&grain(made.x)]) + 0.5, f64::from(made.row - lowest)];
-        let loops = order.iter().map(|id| {
-            let made = &self.made[*id];
-            Loop {
-                form: made.form,
-                row: made.row - lowest,
-                column: column[&grain(made.x)],
-                place: place_of(made),
-                depth: if made.bed.is_front() { BED } else { -BED },
-                parents: made.parents.iter().map(held).collect(),
-                children: Vec::new(),
-                bound: None,
-                source: u32::try_from(made.place.line).unwrap_or(u32::MAX),
-            }
-        });
-        let loops: Vec<Loop> = loops.collect();
-        self.done.sort_by_key(|(_, loops)| loops.first().map(|(id, _)| *id));
-        let mut carriers: Vec<String> = Vec::new();
-        let mut strands = Vec::new();
-        for (fed_by, path) in &self.done {
-            let name = fed_by.join(" ");
-            let known = carriers.iter().position(|known| *known == name);
-            if known.is_none() {
-                carriers.push(name);
-            }
-            let yarn = u8::try_from(known.unwrap_or(carriers.len() - 1)).ok().filter(|yarn| *yarn < 250);
-            let first = path.first().map_or(0, |(id, _)| *id);
-            let yarn = yarn.ok_or_else(|| self.made[first].place.error(Reason::TooManyYarns))?;
-            strands.push(self.strand(yarn, path, &renamed, &place_of));
-        }
-        let columns = u32::try_from(column.len()).unwrap_or(u32::MAX);
-        let rows = u32::try_from(rows).unwrap_or(1);
-        let row_places = vec![columns; rows as usize];
-        let form = Form2d::Sheet;
-        let mut graph =
-            LoopGraph { form, size: [rows, columns], row_places, loops, strands, bound: Vec::new(), bind_off_yarn: 0 };
-        graph.find_children();
-        self.remarks.sort_by_key(|remark| remark.line);
-        Ok(Knitted { graph, carriers, remarks: self.remarks })
-    }
-
-    /// The way of one yarn: tail, loops, a turn wherever the carrier comes back on the same bed, tail.
-    fn strand(
-        &self,
-        yarn: u8,
-        path: &[(usize, u32)],
-        renamed: &[LoopId],
-        place_of: &dyn Fn(&Made) -> [f64; 2],
-    ) -> Strand {
-        let mut stops: Vec<(Stop, Onward)> = Vec::with_capacity(path.len() + 2);
-        let beside = |made: &Made, way: f64, up: f64| {
-            let [x, y] = place_of(made);
-            Stop::At { place: [x + way, y + up], depth: if made.bed.is_front() { BED } else { -BED } }
-        };
-        for (at, (id, over)) in path.iter().enumerate() {
-            let made = &self.made[*id];
-            let way = if made.rightward { TURN } else { -TURN };
-            match at.checked_sub(1).map(|before| &self.made[path[before].0]) {
-                None => stops.push((beside(made, -way, -0.5), Onward::Edge)),
-                Some(last) => {
-                    let same_bed = last.bed.is_front() == made.bed.is_front();
-                    if let Some((_, onward)) = stops.last_mut() {
-                        *onward = Onward::Sinker { over: *over };
-                        if (last.rightward != made.rightward && same_bed) || last.row.abs_diff(made.row) > 1 {
-                            *onward = Onward::Edge;
-                            let out = if last.rightward { TURN } else { -TURN };
-                            stops.push((beside(last, out, 0.4), Onward::Edge));
-                        }
-                    }
-                }
-            }
-            stops.push((Stop::Loop { id: renamed[*id], rightward: made.rightward }, Onward::Edge));
-        }
-        if let Some((id, _)) = path.last() {
-            let made = &self.made[*id];
-            let way = if made.rightward { TURN } else { -TURN };
-            stops.push((beside(made, way, 0.4), Onward::Edge));
-        }
-        Strand { yarn, stops }
     }
 }

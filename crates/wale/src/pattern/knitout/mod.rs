@@ -5,6 +5,7 @@
 //! from the front, loops made on the back bed purls.
 
 mod beds;
+mod graph;
 mod machine;
 mod program;
 #[cfg(test)]
@@ -18,6 +19,14 @@ use super::loops::LoopGraph;
 
 /// Most bytes of a program.
 pub const LARGEST_PROGRAM: usize = 16 << 20;
+/// Most different yarns.
+const MOST_YARNS: usize = 250;
+/// Most carriers that the header or an operation names; machines have up to sixteen.
+const MOST_CARRIERS: usize = 64;
+/// Most characters of a carrier's name.
+const LONGEST_NAME: usize = 40;
+/// Most remarks on extensions; more of them tell nothing new.
+const MOST_EXTENSIONS: usize = 100;
 
 /// A program that has been worked.
 #[derive(Clone, PartialEq, Debug)]
@@ -121,6 +130,18 @@ pub enum KnitoutErrorReason {
         /// Those of the header.
         known: String,
     },
+    /// More carriers on a line than machines have.
+    #[error("{count} carriers: no machine has more than {MOST_CARRIERS}")]
+    TooManyCarriers {
+        /// How many.
+        count: usize,
+    },
+    /// A carrier's name that is none.
+    #[error("carrier `{carrier}`: names have at most {LONGEST_NAME} characters")]
+    CarrierName {
+        /// How it begins.
+        carrier: String,
+    },
     /// A carrier that was not brought in.
     #[error("carrier {carrier} makes a loop but was not brought in; write `inhook {carrier}` or `in {carrier}` before")]
     NotIn {
@@ -182,7 +203,7 @@ pub enum KnitoutErrorReason {
     #[error("there are more than {} loops", super::Chart::MAX_LOOPS)]
     TooManyLoops,
     /// More yarns than can be told apart.
-    #[error("there are more than 250 different yarns")]
+    #[error("there are more than {MOST_YARNS} different yarns")]
     TooManyYarns,
     /// The program makes no loop.
     #[error("the program makes no loop")]

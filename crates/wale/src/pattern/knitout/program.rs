@@ -1,9 +1,11 @@
 //! The lines of a program.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::beds::{FARTHEST_RACK, Needle};
-use super::{KnitoutError, KnitoutErrorReason as Reason, Remark};
+use super::{KnitoutError, KnitoutErrorReason as Reason, LONGEST_NAME, MOST_CARRIERS, MOST_EXTENSIONS, Remark};
+use crate::pattern::instructions::shortened;
 
 /// A program line by line; what moves no loop is left out.
 pub(super) struct Program {
@@ -23,12 +25,14 @@ pub(super) struct Line {
 pub(super) struct Place {
     pub line: usize,
     pub span: Range<usize>,
-    pub source_note: Option<String>,
+    /// Shared by all lines that follow the note.
+    pub source_note: Option<Arc<str>>,
 }
 
 impl Place {
     pub fn error(&self, reason: Reason) -> KnitoutError {
-        let (line, span, source_note) = (self.line, self.span.clone(), self.source_note.clone());
+        let (line, span) = (self.line, self.span.clone());
+        let source_note = self.source_note.as_deref().map(str::to_owned);
         KnitoutError { line, span, reason: Box::new(reason), source_note }
     }
 }
@@ -50,7 +54,7 @@ type Parsed<T> = Result<T, KnitoutError>;
 
 pub(super) fn read(text: &str) -> Parsed<Program> {
     let mut program = Program { carriers: None, lines: Vec::new(), remarks: Vec::new() };
-    let mut source_note = None;
+    let mut source_note: Option<Arc<str>> = None;
     let mut header = true;
     let mut extensions = std::collections::BTreeSet::new();
     let mut start = 0;
@@ -72,22 +76,23 @@ pub(super) fn read(text: &str) -> Parsed<Program> {
         if header && let Some(entry) = line.strip_prefix(";;") {
             if let Some(names) = entry.strip_prefix("Carriers:") {
                 let names = names.split([' ', '\t', ',', ';']).filter(|name| !name.is_empty());
-                program.carriers = Some(names.map(str::to_owned).collect());
+                program.carriers = Some(carriers_of(names, &place)?);
             }
             continue;
         }
         header = false;
         let (code, comment) = line.split_once(';').unwrap_or((line, ""));
         if let Some(note) = comment.strip_prefix("!source:") {
-            source_note = Some(note.trim().chars().take(80).collect());
+            let note: String = note.trim().chars().take(80).collect();
+            source_note = Some(note.into());
         }
         let words: Vec<&str> = code.split_ascii_whitespace().collect();
         let Some((operation, parameters)) = words.split_first() else { continue };
         place.source_note.clone_from(&source_note);
         place.span.end = place.span.start + code.trim_end().len();
         if operation.starts_with("x-") {
-            if extensions.insert((*operation).to_owned()) {
-                let what = format!("the extension `{operation}` is passed over");
+            if extensions.len() < MOST_EXTENSIONS && extensions.insert(*operation) {
+                let what = format!("the extension `{}` is passed over", shortened(operation));
                 program.remarks.push(Remark { line: place.line, what });
             }
             continue;
@@ -105,18 +110,30 @@ pub(super) fn read(text: &str) -> Parsed<Program> {
     Ok(program)
 }
 
+/// The names of carriers, which are few and short.
+fn carriers_of<'a>(names: impl Iterator<Item = &'a str> + Clone, place: &Place) -> Parsed<Vec<String>> {
+    let count = names.clone().count();
+    if count > MOST_CARRIERS {
+        return Err(place.error(Reason::TooManyCarriers { count }));
+    }
+    match names.clone().find(|name| name.chars().nth(LONGEST_NAME).is_some()) {
+        Some(name) => Err(place.error(Reason::CarrierName { carrier: shortened(name) })),
+        None => Ok(names.map(str::to_owned).collect()),
+    }
+}
+
 /// The operation of a line; `None` where it moves no loop and no carrier.
 fn parse(word: &str, parameters: &[&str], place: &Place) -> Parsed<Option<Operation>> {
     let needs = |operation: &'static str, needs: &'static str| place.error(Reason::Parameters { operation, needs });
-    let needle = |text: &str| Needle::read(text).ok_or_else(|| place.error(Reason::Needle { needle: text.to_owned() }));
+    let needle = |text: &str| Needle::read(text).ok_or_else(|| place.error(Reason::Needle { needle: shortened(text) }));
     let direction = |text: &str| match text {
         "+" => Some(true),
         "-" => Some(false),
         _ => None,
     };
-    let owned = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<String>>();
+    let owned = |words: &[&str]| carriers_of(words.iter().copied(), place);
     let carriers = |operation| {
-        if parameters.is_empty() { Err(needs(operation, "the carriers")) } else { Ok(owned(parameters)) }
+        if parameters.is_empty() { Err(needs(operation, "the carriers")) } else { owned(parameters) }
     };
     Ok(Some(match word {
         "in" => Operation::In { carriers: carriers("in")?, hook: false },
@@ -132,7 +149,7 @@ fn parse(word: &str, parameters: &[&str], place: &Place) -> Parsed<Option<Operat
         "rack" => match parameters {
             [by] => {
                 let rack = by.parse::<f64>().ok().filter(|rack| rack.abs() <= FARTHEST_RACK);
-                Operation::Rack(rack.ok_or_else(|| place.error(Reason::Rack { rack: (*by).to_owned() }))?)
+                Operation::Rack(rack.ok_or_else(|| place.error(Reason::Rack { rack: shortened(by) }))?)
             }
             _ => return Err(needs("rack", "one number of needles")),
         },
@@ -146,7 +163,7 @@ fn parse(word: &str, parameters: &[&str], place: &Place) -> Parsed<Option<Operat
                 return Err(needs(operation, "a direction (+ or -), a needle and carriers"));
             };
             let rightward = direction(way).ok_or_else(|| needs(operation, "a direction (+ or -) first"))?;
-            let (needle, carriers) = (needle(at)?, owned(feed));
+            let (needle, carriers) = (needle(at)?, owned(feed)?);
             match (word, carriers.is_empty()) {
                 ("knit", true) => Operation::Drop { needle },
                 ("knit", false) => Operation::Knit { rightward, needle, carriers },
@@ -162,7 +179,7 @@ fn parse(word: &str, parameters: &[&str], place: &Place) -> Parsed<Option<Operat
                 return Err(needs("split", "a direction (+ or -), two needles and carriers"));
             };
             let rightward = direction(way).ok_or_else(|| needs("split", "a direction (+ or -) first"))?;
-            let (needle, to, carriers) = (needle(at)?, needle(to)?, owned(feed));
+            let (needle, to, carriers) = (needle(at)?, needle(to)?, owned(feed)?);
             if carriers.is_empty() {
                 Operation::Transfer { from: needle, to }
             } else {
@@ -184,6 +201,6 @@ fn parse(word: &str, parameters: &[&str], place: &Place) -> Parsed<Option<Operat
             }
             _ => return Err(needs("amiss", "one needle")),
         },
-        _ => return Err(place.error(Reason::Operation { word: super::super::instructions::shortened(word) })),
+        _ => return Err(place.error(Reason::Operation { word: shortened(word) })),
     }))
 }

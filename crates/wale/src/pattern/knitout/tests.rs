@@ -58,7 +58,8 @@ fn an_empty_needle_takes_a_yarn_over() {
     );
     let over = knitted.graph.loops.iter().find(|of| of.source == 13).unwrap();
     assert_eq!((over.form, over.row), (Form::Open, 2));
-    assert!(knitted.remarks.iter().any(|remark| remark.what.contains("1 needles were empty")));
+    let what = "f1 was empty when it was knitted: the yarn is laid over it, as a tuck lays it";
+    assert!(knitted.remarks.contains(&Remark { line: 13, what: what.to_owned() }), "{:?}", knitted.remarks);
     assert!(knitted.remarks.iter().any(|remark| remark.what.contains("never taken out")));
 }
 
@@ -107,12 +108,46 @@ fn programs_that_cannot_be_knitted_say_where_and_why() {
         ("purl + f1 1\n", 1, "`purl` is no operation of knitout"),
         ("rack\n", 1, "`rack` needs one number of needles"),
         ("in 1\n", 1, "the program makes no loop"),
+        (
+            "inhook 1\ntuck - f1 1\nreleasehook 1\ntuck - f2 1\nout 1\nknit + f1 1\n",
+            6,
+            "carrier 1 makes a loop but was not brought in; write `inhook 1` or `in 1` before",
+        ),
+        ("rack -12.5\n", 1, "racked by -12.5: machines reach 12 needles to either side"),
     ];
     for (lines, line, reason) in cases {
         assert_eq!(refused(lines), (line, reason.to_owned()), "{lines}");
     }
+    let again = "tuck + f1 1\n";
+    let stacked = "f1 holds 65 loops, and one is drawn through 7 at most";
+    assert_eq!(refused(&format!("in 1\n{}", again.repeat(70))), (66, stacked.to_owned()));
+    assert_eq!(refused(&format!("in{}\n", " 1".repeat(65))).1, "65 carriers: no machine has more than 64");
+    assert!(refused(&format!("in {}\n", "a".repeat(50))).1.ends_with("names have at most 40 characters"));
     assert!(read_knitout("knit + f1 1\n").unwrap_err().to_string().contains("no knitout"));
     assert!(read_knitout("").unwrap_err().to_string().contains("no knitout"));
+}
+
+#[test]
+fn yarns_beyond_the_limit_are_refused_where_they_begin() {
+    let text: String = (0..251).map(|name| format!("in y{name}\ntuck + f{name} y{name}\nout y{name}\n")).collect();
+    let error = read_knitout(&format!(";!knitout-2\n{text}")).unwrap_err();
+    assert_eq!(error.to_string(), "line 753: there are more than 250 different yarns");
+}
+
+/// Each of these once took time with the square of the program's length.
+#[test]
+fn long_programs_are_worked_in_the_time_of_their_length() {
+    let began = std::time::Instant::now();
+    let bed: String = (0..20_000).map(|needle| format!("tuck + f{needle} 1\n")).collect();
+    let floats = "knit + f0 1\nknit + f19999 1\n".repeat(20_000);
+    let knitted = knitted(&format!("in 1\n{bed}{floats}"));
+    assert_eq!(knitted.graph.longest_float(), 19_998);
+    let dropped = "knit + f1 1\ndrop f1\n".repeat(50_000);
+    assert!(read_knitout(&format!("{HEAD}in 1\n{dropped}")).is_ok());
+    let header = format!(";!knitout-2\n;;Carriers:{}\n", " 1".repeat(50_000));
+    assert_eq!(read_knitout(&header).unwrap_err().line, 2);
+    // Minutes before; now less than a second.
+    assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
 }
 
 #[test]

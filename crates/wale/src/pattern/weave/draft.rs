@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::pattern::repeat::borders;
+
 /// A warp end or a weft pick.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Thread {
@@ -48,6 +50,20 @@ pub enum DraftError {
         /// Picks asked for.
         picks: u64,
     },
+    /// More ends or picks than [`Draft::MAX_THREADS`].
+    #[error("{threads} threads, the limit is {} of warp and of weft each", Draft::MAX_THREADS)]
+    TooLong {
+        /// Ends or picks asked for, whichever are more.
+        threads: u64,
+    },
+}
+
+impl DraftError {
+    /// Whether the draft asks for too much rather than being wrong.
+    #[must_use]
+    pub fn is_size(&self) -> bool {
+        matches!(self, Self::TooLarge { .. } | Self::TooLong { .. })
+    }
 }
 
 /// A draft: for every pick, from the first that was woven, and every end from the left, whether the warp lies on top as
@@ -64,6 +80,9 @@ pub struct Draft {
 impl Draft {
     /// Most crossings of a draft.
     pub const MAX_CROSSINGS: u64 = 16_000_000;
+
+    /// Most ends, and most picks: a kilometre of cloth. Every thread has numbers of its own, however few crossings it has.
+    pub const MAX_THREADS: u64 = 1_000_000;
 
     /// Checks rows of crossings, the first pick first, each from the left; threads of which nothing is known.
     ///
@@ -91,6 +110,9 @@ impl Draft {
         }
         if u128::from(ends) * u128::from(picks) > u128::from(Self::MAX_CROSSINGS) {
             return Err(DraftError::TooLarge { ends, picks });
+        }
+        if ends.max(picks) > Self::MAX_THREADS {
+            return Err(DraftError::TooLong { threads: ends.max(picks) });
         }
         Ok(())
     }
@@ -197,15 +219,10 @@ impl Draft {
     #[must_use]
     pub fn smallest_repeat(&self) -> Self {
         let (ends, picks) = (self.ends(), self.picks());
-        let end = (1..=ends).find(|&n| {
-            (n..ends).all(|end| self.warp[end] == self.warp[end - n])
-                && self.warp_up.iter().all(|row| (n..ends).all(|end| row[end] == row[end - n]))
-        });
-        let pick = (1..=picks).find(|&n| {
-            (n..picks)
-                .all(|pick| self.weft[pick] == self.weft[pick - n] && self.warp_up[pick] == self.warp_up[pick - n])
-        });
-        let (end, pick) = (end.unwrap_or(ends), pick.unwrap_or(picks));
+        let period =
+            |n: usize, equal: &dyn Fn(usize, usize) -> bool| n - borders(n, equal).last().copied().unwrap_or(0);
+        let end = period(ends, &|a, b| self.warp[a] == self.warp[b] && self.warp_up.iter().all(|row| row[a] == row[b]));
+        let pick = period(picks, &|a, b| self.weft[a] == self.weft[b] && self.warp_up[a] == self.warp_up[b]);
         Self {
             warp_up: self.warp_up[..pick].iter().map(|row| row[..end].to_vec()).collect(),
             warp: self.warp[..end].to_vec(),
@@ -311,6 +328,10 @@ mod tests {
         assert_eq!((striped.smallest_repeat().ends(), striped.smallest_repeat().picks()), (3, 6));
         assert_eq!(striped.smallest_repeat().repeat(12, 9).unwrap(), striped);
         assert_eq!(striped.yarn_count(), 4);
+        // One end that differs at the edge of half a million must not ask for their square.
+        let mut wide = Draft::plain().repeat(500_000, 1).unwrap();
+        (wide.warp[499_998].yarn, wide.warp[499_999].yarn) = (5, 6);
+        assert_eq!(wide.smallest_repeat(), wide);
     }
 
     #[test]
@@ -318,6 +339,7 @@ mod tests {
         assert_eq!(Draft::new(vec![]).unwrap_err(), DraftError::Empty);
         let ragged = Draft::new(vec![vec![true; 3], vec![true; 2]]).unwrap_err();
         assert_eq!(ragged.to_string(), "pick 2 has 2 crossings, there are 3 ends");
+        assert!(Draft::plain().repeat(2, 1_000_001).unwrap_err().to_string().contains("1000001 threads, the limit is"));
         assert!(Draft::plain().repeat(1 << 20, 1 << 20).unwrap_err().to_string().contains("the limit is 16000000"));
     }
 }

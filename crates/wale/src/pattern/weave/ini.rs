@@ -35,12 +35,33 @@ pub(super) struct Section {
 /// The sections by their names in upper case, and what was passed over.
 pub(super) struct Ini {
     pub sections: BTreeMap<String, Section>,
-    pub remarks: Vec<(usize, String)>,
+    pub remarks: Remarks,
+}
+
+/// What was unusual, with its line. A file of sixteen megabytes can be so in every line; the first hundred tell enough.
+#[derive(Default)]
+pub(super) struct Remarks {
+    list: Vec<(usize, String)>,
+}
+
+impl Remarks {
+    const MOST: usize = 100;
+
+    pub fn add(&mut self, line: usize, what: impl FnOnce() -> String) {
+        if self.list.len() < Self::MOST {
+            self.list.push((line, what()));
+        }
+    }
+
+    pub fn sorted(mut self) -> Vec<(usize, String)> {
+        self.list.sort();
+        self.list
+    }
 }
 
 /// Reads the lines of a file. A key that is given twice with the same value counts once.
 pub(super) fn read(text: &str) -> Result<Ini, WifError> {
-    let mut ini = Ini { sections: BTreeMap::new(), remarks: Vec::new() };
+    let mut ini = Ini { sections: BTreeMap::new(), remarks: Remarks::default() };
     let mut current: Option<String> = None;
     let mut start = 0;
     for (index, raw) in text.split_inclusive('\n').enumerate() {
@@ -53,14 +74,14 @@ pub(super) fn read(text: &str) -> Result<Ini, WifError> {
         if let Some(name) = line.strip_prefix('[') {
             let name = name.split(']').next().unwrap_or_default().trim().to_uppercase();
             if ini.sections.contains_key(&name) {
-                ini.remarks.push((at.line, format!("section [{name}] goes on here")));
+                ini.remarks.add(at.line, || format!("section [{}] goes on here", shortened(&name)));
             }
             ini.sections.entry(name.clone()).or_insert_with(|| Section { at, entries: BTreeMap::new() });
             current = Some(name);
             continue;
         }
         let Some(section) = current.as_ref() else {
-            ini.remarks.push((at.line, "text before the first section is passed over".to_owned()));
+            ini.remarks.add(at.line, || "text before the first section is passed over".to_owned());
             continue;
         };
         // Notes and private sections are nobody's business.
@@ -70,7 +91,7 @@ pub(super) fn read(text: &str) -> Result<Ini, WifError> {
         let (key, value) = match line.split_once('=') {
             Some((key, value)) => (key.trim(), value.trim()),
             None => {
-                ini.remarks.push((at.line, format!("`{}` has no `=` and counts as empty", shortened(line))));
+                ini.remarks.add(at.line, || format!("`{}` has no `=` and counts as empty", shortened(line)));
                 (line, "")
             }
         };
@@ -79,14 +100,14 @@ pub(super) fn read(text: &str) -> Result<Ini, WifError> {
         match section_of.entries.get(&key) {
             Some(known) if known.value != value && section != "CONTENTS" => {
                 let reason = Reason::Conflict {
-                    section: section.clone(),
+                    section: shortened(section),
                     key: shortened(&key),
                     values: [shortened(&known.value), shortened(&value)],
                     since: known.at.line,
                 };
                 return Err(at.error(reason));
             }
-            Some(_) => ini.remarks.push((at.line, format!("`{}` is given twice", shortened(&key)))),
+            Some(_) => ini.remarks.add(at.line, || format!("`{}` is given twice", shortened(&key))),
             None => {
                 section_of.entries.insert(key, Entry { value, at });
             }

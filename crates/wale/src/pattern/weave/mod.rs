@@ -5,6 +5,7 @@ pub mod draft;
 mod ini;
 pub mod named;
 pub mod peirce;
+mod shed;
 mod symbols;
 pub mod wif;
 #[cfg(test)]

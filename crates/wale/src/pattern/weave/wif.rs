@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::draft::{Draft, DraftError, Thread};
 use super::ini::{self, At, Entry, Ini, Section, shortened};
+use super::shed::Sheds;
 
 /// Most bytes of a file.
 pub const LARGEST_WIF: usize = 16 << 20;
@@ -138,9 +139,7 @@ pub fn read_wif(bytes: &[u8]) -> Parsed<Wif> {
         return Err(nowhere.error(Reason::NoWif));
     }
     let draft = file.draft()?;
-    let mut remarks = file.ini.remarks;
-    remarks.sort();
-    Ok(Wif { draft, remarks })
+    Ok(Wif { draft, remarks: file.ini.remarks.sorted() })
 }
 
 struct File {
@@ -151,6 +150,25 @@ struct File {
 struct Threads {
     count: usize,
     threads: Vec<Thread>,
+}
+
+/// What is pressed or lifted at every pick, and what each treadle lifts if it is treadles.
+struct Lifts {
+    pressed: BTreeMap<u64, Vec<u64>>,
+    tieup: Option<BTreeMap<u64, Vec<u64>>>,
+}
+
+impl Lifts {
+    /// The shafts that are lifted at a pick, some perhaps more than once.
+    fn at(&self, pick: u64) -> impl Iterator<Item = u64> {
+        let pressed = self.pressed.get(&pick).into_iter().flatten();
+        pressed
+            .flat_map(|one| match &self.tieup {
+                None => std::slice::from_ref(one),
+                Some(tieup) => tieup.get(one).map_or(&[][..], Vec::as_slice),
+            })
+            .copied()
+    }
 }
 
 impl File {
@@ -178,52 +196,32 @@ impl File {
         let weft = self.threads("WEFT", picks, &colors)?;
         let threading = self.section("THREADING", "which shaft each end is on")?.clone();
         let threading = self.lists("THREADING", &threading, ("end", ends), ("shaft", shafts))?;
-        let lifted = self.lifted(picks, shafts, treadles)?;
-        let mut on_shaft: Vec<Vec<usize>> = vec![Vec::new(); shafts as usize + 1];
-        for (end, list) in &threading {
-            for shaft in list {
-                on_shaft[*shaft as usize].push(*end as usize - 1);
-            }
-        }
-        let mut warp_up = Vec::with_capacity(warp.count.min(weft.count));
-        for pick in 1..=picks {
-            let mut row = vec![!rising; warp.count];
-            for shaft in lifted.get(&pick).into_iter().flatten() {
-                for end in &on_shaft[*shaft as usize] {
-                    row[*end] = rising;
-                }
-            }
-            warp_up.push(row);
-        }
+        let sheds = Sheds::new(warp.count, shafts as usize, &threading);
+        let lifts = self.lifts(picks, shafts, treadles)?;
+        let warp_up = (1..=picks).map(|pick| sheds.warp_up(lifts.at(pick), rising)).collect();
         let mut draft = Draft::new(warp_up).map_err(|size| At { line: 1, span: 0..0 }.error(Reason::Size(size)))?;
         (draft.warp, draft.weft) = (warp.threads, weft.threads);
         Ok(draft)
     }
 
-    /// The shafts that are lifted at every pick: of the lift plan, or of the treadles that are pressed.
-    fn lifted(&mut self, picks: u64, shafts: u64, treadles: u64) -> Parsed<BTreeMap<u64, Vec<u64>>> {
+    /// What lifts shafts at every pick: the lift plan, or the treadles that are pressed.
+    fn lifts(&mut self, picks: u64, shafts: u64, treadles: u64) -> Parsed<Lifts> {
         let plan = self.ini.sections.get("LIFTPLAN").filter(|plan| !plan.entries.is_empty()).cloned();
         let treadling = self.ini.sections.get("TREADLING").filter(|plan| !plan.entries.is_empty()).cloned();
         match (plan, treadling) {
             (Some(plan), treadling) => {
                 if treadling.is_some() {
-                    let what = "both a lift plan and treadling: the lift plan counts".to_owned();
-                    self.ini.remarks.push((plan.at.line, what));
+                    let what = || "both a lift plan and treadling: the lift plan counts".to_owned();
+                    self.ini.remarks.add(plan.at.line, what);
                 }
-                self.lists("LIFTPLAN", &plan, ("pick", picks), ("shaft", shafts))
+                let shafts = self.lists("LIFTPLAN", &plan, ("pick", picks), ("shaft", shafts))?;
+                Ok(Lifts { pressed: shafts, tieup: None })
             }
             (None, Some(treadling)) => {
                 let tieup = self.section("TIEUP", "which shafts each treadle lifts")?.clone();
                 let tieup = self.lists("TIEUP", &tieup, ("treadle", treadles), ("shaft", shafts))?;
                 let pressed = self.lists("TREADLING", &treadling, ("pick", picks), ("treadle", treadles))?;
-                let of = |treadles: Vec<u64>| {
-                    let mut shafts: Vec<u64> =
-                        treadles.iter().filter_map(|treadle| tieup.get(treadle)).flatten().copied().collect();
-                    shafts.sort_unstable();
-                    shafts.dedup();
-                    shafts
-                };
-                Ok(pressed.into_iter().map(|(pick, treadles)| (pick, of(treadles))).collect())
+                Ok(Lifts { pressed, tieup: Some(tieup) })
             }
             (None, None) => {
                 let at = At { line: 1, span: 0..0 };
@@ -258,19 +256,21 @@ impl File {
                     list.push(number);
                 }
             }
+            list.sort_unstable();
+            list.dedup();
             found.insert(key, (list, entry.at.clone()));
         }
         // Some programs count from 0.
         if found.contains_key(&0) && !found.contains_key(&keys) {
-            self.ini.remarks.push((section.at.line, format!("[{name}] counts from 0")));
-            found = found.into_iter().map(|(key, value)| (key + 1, value)).collect();
+            self.ini.remarks.add(section.at.line, || format!("[{name}] counts from 0"));
+            found = found.into_iter().map(|(key, value)| (key.saturating_add(1), value)).collect();
         }
         let mut lists = BTreeMap::new();
         for (key, (list, at)) in found {
             if key == 0 || key > keys {
                 // Programs tie up treadles that no loom of the file has; only pressing one is an error.
                 if list.is_empty() || key_is == "treadle" {
-                    self.ini.remarks.push((at.line, format!("there is no {key_is} {key}")));
+                    self.ini.remarks.add(at.line, || format!("there is no {key_is} {key}"));
                     continue;
                 }
                 return Err(at.error(Reason::Beyond { what: key_is, number: key, count: keys }));

@@ -95,6 +95,30 @@ fn bad_files_name_the_line_and_the_reason() {
     assert_eq!(*read_wif(&utf16[2..]).unwrap_err().reason, WifErrorReason::Utf16);
 }
 
+/// Files of some hundred kilobytes that once asked for hours or for gigabytes.
+#[test]
+fn small_files_ask_for_little_time_and_memory() {
+    let began = std::time::Instant::now();
+    let listed = |count: usize| (1..=count).map(|n| n.to_string()).collect::<Vec<_>>().join(",");
+    let head = "[WIF]\n[WEAVING]\nShafts=10000\nTreadles=2\n[WARP]\nThreads=16\n[WEFT]\nThreads=20000\n";
+    let all = listed(10_000);
+    let picks: String = (1..=20_000).map(|pick| format!("{pick}={}\n", pick % 2 + 1)).collect();
+    let text = format!("{head}[THREADING]\n1={all}\n2=7\n[TIEUP]\n1={all}\n2=8\n[TREADLING]\n{picks}");
+    let draft = read_wif(text.as_bytes()).unwrap().draft;
+    assert_eq!([0, 1, 2].map(|end| draft.warp_up(end, 1)), [true, true, false]);
+    assert_eq!([0, 1, 2].map(|end| draft.warp_up(end, 0)), [true, false, false]);
+    // One shaft said over and over is one.
+    let again = "1,".repeat(100_000);
+    let text = format!("{head}[THREADING]\n1={again}\n[LIFTPLAN]\n{}", picks.replace("=2", "=1"));
+    assert!(read_wif(text.as_bytes()).unwrap().draft.warp_up(0, 0));
+    // What is unusual everywhere is told a hundred times.
+    let text = format!("{TWILL}[X]\n{}", "a\n".repeat(100_000));
+    assert_eq!(read_wif(text.as_bytes()).unwrap().remarks.len(), 100);
+    let (message, _) = refused(&TWILL.replace("[WARP]\nThreads=4", "[WARP]\nThreads=3000000"));
+    assert!(message.contains("3000000 threads, the limit is 1000000 of warp and of weft each"), "{message}");
+    assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
+}
+
 #[test]
 fn collected_files_are_read() {
     let Some(folder) = std::env::var_os("WALE_DATA").map(|data| PathBuf::from(data).join("wif")) else {

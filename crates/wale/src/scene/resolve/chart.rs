@@ -84,7 +84,7 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
             Some(yarns::Drawn::Stitches(_, chart)) => (sized(chart, text, false)?, worked, Vec::new()),
             // Yarns alone are knitted plain, as large as they are drawn.
             Some(yarns::Drawn::Yarns(_, grid)) => {
-                let [columns, rows] = [grid[0].len(), grid.len()].map(|n| Some(n as u64));
+                let [columns, rows] = [grid.rows[0].len(), grid.rows.len()].map(|n| Some(n as u64));
                 let text = ChartText { columns: text.columns.or(columns), rows: text.rows.or(rows), ..text.clone() };
                 (sized(&Chart::stockinette(), &text, true)?, worked, Vec::new())
             }

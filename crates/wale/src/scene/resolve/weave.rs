@@ -85,7 +85,7 @@ fn wif(name: &str, directory: Option<&Path>) -> Result<(Draft, PathBuf), Failure
     let read = read_wif(&bytes).map_err(|error| {
         let class = match *error.reason {
             WifErrorReason::TooLong { .. } | WifErrorReason::TooMany { .. } => ErrorClass::ResourceLimit,
-            WifErrorReason::Size(DraftError::TooLarge { .. }) => ErrorClass::ResourceLimit,
+            WifErrorReason::Size(ref size) if size.is_size() => ErrorClass::ResourceLimit,
             _ => ErrorClass::BadInput,
         };
         let complaint = Complaint::new("", error.reason.to_string()).class(class);
@@ -135,11 +135,7 @@ fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draf
             None => "picks",
         };
         let complaint = Complaint::new(format!("{HERE}.{key}"), error.to_string()).mend("make the fabric smaller");
-        if matches!(error, DraftError::TooLarge { .. }) {
-            complaint.class(ErrorClass::ResourceLimit)
-        } else {
-            complaint
-        }
+        if error.is_size() { complaint.class(ErrorClass::ResourceLimit) } else { complaint }
     };
     if let Some(reach) = reach {
         let [ends, picks] = reach.map(|count| (count as u64).saturating_add(1));

@@ -1,6 +1,6 @@
 //! Which yarn each stitch is of: stripes, a grid of names, or an image.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::beside::{path_beside, read_bytes};
@@ -16,7 +16,33 @@ use crate::scene::schema::{ChartText, YarnText};
 /// What an image draws, the lowest row first.
 pub(super) enum Drawn {
     Stitches(PathBuf, Chart),
-    Yarns(PathBuf, Vec<Vec<String>>),
+    Yarns(PathBuf, Grid),
+}
+
+/// Which yarn stands at every place: an image may have sixteen million of them.
+#[derive(Clone, Default)]
+pub(super) struct Grid {
+    /// In alphabetical order, few enough for a byte.
+    names: Vec<String>,
+    /// The lowest row first.
+    pub rows: Vec<Vec<u8>>,
+}
+
+impl Grid {
+    fn new<'a>(key: &str, rows: &[Vec<&'a str>]) -> Result<Self, Complaint> {
+        if rows.is_empty() || rows.iter().any(Vec::is_empty) {
+            return Err(Complaint::new(key, "a row without a yarn"));
+        }
+        let names: BTreeSet<&'a str> = rows.iter().flatten().copied().collect();
+        if names.len() > MOST_YARNS {
+            return Err(Complaint::new(key, format!("{} yarns", names.len()))
+                .why(format!("at most {MOST_YARNS} can be told apart")));
+        }
+        let names: Vec<&str> = names.into_iter().collect();
+        let number = |name: &&str| names.binary_search(name).unwrap_or(0) as u8;
+        let rows = rows.iter().map(|row| row.iter().map(number).collect()).collect();
+        Ok(Self { rows, names: names.into_iter().map(str::to_owned).collect() })
+    }
 }
 
 impl Drawn {
@@ -57,14 +83,14 @@ pub(super) fn image(text: &ChartText, directory: Option<&Path>) -> Result<Option
     }
     let grid = names(&pixels, &meaning)?;
     if meaning.values().all(|name| Stitch::read(name).is_none()) {
-        return Ok(Some(Drawn::Yarns(
-            path,
-            grid.into_iter().map(|row| row.into_iter().map(str::to_owned).collect()).collect(),
-        )));
+        return Ok(Some(Drawn::Yarns(path, Grid::new(&key, &grid)?)));
     }
+    let known: BTreeMap<&str, Option<Stitch>> = meaning.values().map(|name| (*name, Stitch::read(name))).collect();
     let stitch = |name: &str| {
-        let color = palette.iter().find(|(_, known)| *known == name).map_or("", |(color, _)| color);
-        Stitch::read(name).ok_or_else(|| unknown_stitch(&format!("{HERE}.palette.{color}"), name))
+        known.get(name).copied().flatten().ok_or_else(|| {
+            let color = palette.iter().find(|(_, known)| *known == name).map_or("", |(color, _)| color);
+            unknown_stitch(&format!("{HERE}.palette.{color}"), name)
+        })
     };
     let rows: Result<Vec<Vec<Stitch>>, Complaint> =
         grid.into_iter().map(|row| row.into_iter().map(stitch).collect()).collect();
@@ -99,48 +125,44 @@ pub(super) fn assign(
     text: &ChartText,
     drawn: Option<&Drawn>,
 ) -> Result<(Chart, Vec<String>), Complaint> {
-    let grid = match drawn {
-        Some(Drawn::Yarns(_, grid)) => Some(("image", grid.clone())),
+    let characters =
+        |line: &'_ String| -> Vec<String> { line.chars().filter(|c| !c.is_whitespace()).map(String::from).collect() };
+    let said = |rows: &[Vec<String>], key: &str| {
+        let rows: Vec<Vec<&str>> = rows.iter().map(|row| row.iter().map(String::as_str).collect()).collect();
+        Grid::new(&format!("{HERE}.{key}"), &rows)
+    };
+    let image = match drawn {
+        Some(Drawn::Yarns(_, grid)) => Some(grid),
         _ => None,
     };
-    let characters = |line: &String| line.chars().filter(|c| !c.is_whitespace()).map(String::from).collect();
-    let given: Vec<(&str, Vec<Vec<String>>)> = [
-        text.stripes.as_ref().map(|rows| ("stripes", rows.iter().map(|name| vec![name.clone()]).collect())),
-        text.yarns.as_ref().map(|lines| ("yarns", lines.iter().rev().map(characters).collect())),
-        grid,
-        (!named.is_empty()).then(|| ("file", Vec::new())),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    if let [(first, _), (second, _), ..] = given.as_slice() {
+    let given = [
+        ("stripes", text.stripes.is_some()),
+        ("yarns", text.yarns.is_some()),
+        ("image", image.is_some()),
+        ("file", !named.is_empty()),
+    ];
+    let given: Vec<&str> = given.into_iter().filter(|(_, given)| *given).map(|(key, _)| key).collect();
+    if let [first, second, ..] = given.as_slice() {
         let complaint = Complaint::new(format!("{HERE}.{second}"), format!("{first} and {second} both give the yarns"));
         return Err(complaint.mend("keep one of them"));
     }
-    let Some((key, grid)) = given.into_iter().next().filter(|(key, _)| *key != "file") else {
+    let (key, grid) = if let Some(stripes) = &text.stripes {
+        ("stripes", said(&stripes.iter().map(|name| vec![name.clone()]).collect::<Vec<_>>(), "stripes")?)
+    } else if let Some(lines) = &text.yarns {
+        ("yarns", said(&lines.iter().rev().map(characters).collect::<Vec<_>>(), "yarns")?)
+    } else if let Some(grid) = image {
+        ("image", grid.clone())
+    } else {
         return Ok((chart, named));
     };
-    let key = format!("{HERE}.{key}");
-    if grid.is_empty() || grid.iter().any(Vec::is_empty) {
-        return Err(Complaint::new(key, "a row without a yarn"));
-    }
-    let mut names: Vec<String> = grid.iter().flatten().cloned().collect();
-    names.sort();
-    names.dedup();
-    if names.len() > MOST_YARNS {
-        return Err(Complaint::new(key, format!("{} yarns", names.len()))
-            .why(format!("at most {MOST_YARNS} can be told apart")));
-    }
-    let number = |name: &String| names.iter().position(|known| known == name).unwrap_or(0) as u8;
-    let grid: Vec<Vec<u8>> = grid.iter().map(|row| row.iter().map(number).collect()).collect();
     let yarns = chart
         .rows()
         .iter()
-        .zip(grid.iter().cycle())
+        .zip(grid.rows.iter().cycle())
         .map(|(row, yarns)| yarns.iter().copied().cycle().take(row.len()).collect());
     let yarns = yarns.collect();
-    let chart = chart.with_yarns(yarns).map_err(|error| Complaint::new(key, error.to_string()))?;
-    Ok((chart, names))
+    let chart = chart.with_yarns(yarns).map_err(|error| Complaint::new(format!("{HERE}.{key}"), error.to_string()))?;
+    Ok((chart, grid.names))
 }
 
 /// The cards and colours of a fabric's yarns: what they have of their own, over what the scene's yarn says.

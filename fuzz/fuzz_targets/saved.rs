@@ -1,0 +1,10 @@
+//! Any bytes as checkpoints and frames.
+
+#![no_main]
+
+#[path = "../../crates/wale/tests/reading/mod.rs"]
+mod reading;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    reading::saved(bytes);
+});
