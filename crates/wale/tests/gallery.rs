@@ -38,10 +38,10 @@ fn the_sides_of_stockinette_roll_to_the_back() {
 }
 
 #[test]
-fn thick_contacts_roll_the_sides_of_stockinette_to_the_back() {
+fn thick_contacts_roll_the_ends_of_stockinette_to_the_front() {
     let thick = play_beside_others("thick-contacts.toml");
     println!("thick contacts: {:?}, speed {:.1} mm/s", thick.last, 1e3 * thick.speed);
-    assert!(thick.last.side_edges.course_per_m < -50.0, "negative is to the back");
+    assert!(thick.last.end_edges.wale_per_m > 50.0, "positive is to the front");
     let stretch = thick.steps.iter().fold(0.0f64, |most, step| most.max(step.largest_stretch));
     assert!(stretch < 1.1, "yarns are as long as they are: {stretch}");
 }
