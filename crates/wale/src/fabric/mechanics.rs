@@ -9,6 +9,10 @@ use crate::model::{
     WovenCard, YarnCard, YarnId, YarnRole, Yarns,
 };
 
+/// Part of its spacing that a segment of thick contacts is kept from losing as if the yarn itself were pressed; relaxed fabrics
+/// keep more.
+const CORE: f64 = 0.25;
+
 /// Elastic elements of a fabric.
 #[derive(Clone, Debug, Default)]
 pub struct Mechanics {
@@ -139,6 +143,11 @@ impl Mechanics {
         };
         if distance > 0.0 && (network.slides(pass) || network.slides(next.pass)) {
             self.spacing.push(Spacing { stiffness: card.spacing_stiffness(), distance }, between);
+            // Where spacing gives way, something harder must be left of a segment: a fabric that snaps drives it to nothing.
+            let core = Spacing { stiffness: material.stretch_stiffness, distance: CORE * distance };
+            if card.knit().is_some_and(|card| card.thickness.is_some()) {
+                self.spacing.push(core, between);
+            }
         }
     }
 
