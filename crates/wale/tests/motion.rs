@@ -130,12 +130,16 @@ fn the_same_bits_on_any_number_of_threads() {
     }
 }
 
+/// So many rows and columns of yarns with thick contacts, free and without weight.
+fn thick(pattern: &str, size: u32, more: &str) -> Simulation {
+    simulation(&scene(&format!(
+        "pattern = \"{pattern}\"\ncolumns = {size}\nrows = {size}\n[fabric]\ncontacts = \"thick\"\n{more}\n[simulation]\ngravity = 0"
+    )))
+}
+
 #[test]
 fn thick_contacts_move_as_others_do() {
-    let scene = scene(
-        "pattern = \"rib 1x1\"\ncolumns = 6\nrows = 6\n[fabric]\ncontacts = \"thick\"\n[simulation]\ngravity = 0",
-    );
-    let mut simulation = simulation(&scene);
+    let mut simulation = thick("rib 1x1", 6, "");
     while simulation.state().time < 0.1 {
         let report = simulation.step().unwrap();
         assert!(report.largest_stretch < 1.1, "{}", report.largest_stretch);
@@ -147,10 +151,7 @@ fn thick_contacts_move_as_others_do() {
 
 #[test]
 fn thick_contacts_without_a_distance_stay_in_their_nodes() {
-    let scene = scene(
-        "pattern = \"garter\"\ncolumns = 4\nrows = 4\n[fabric]\ncontacts = \"thick\"\ncontact_distance = 0\n[simulation]\ngravity = 0",
-    );
-    let mut simulation = simulation(&scene);
+    let mut simulation = thick("garter", 4, "contact_distance = 0");
     while simulation.state().time < 0.02 {
         let report = simulation.step().unwrap();
         assert!(report.largest_stretch < 1.1 && report.energies.iter().all(|(_, energy)| energy.is_finite()));

@@ -36,7 +36,7 @@ impl Model {
     }
 
     pub fn tile(&self, chart: &Chart) -> Network {
-        knit::tile(chart, &self.card()).expect("the repeat of a chart of knits and purls has no end")
+        knit::tile(chart, &self.card()).expect("a repeat that has been knitted before")
     }
 
     /// Equilibria of a repeat, the lowest first.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
 
+use super::least_squares::{MOST_YARNS, stack_compressions};
 use crate::energy::thick::normal;
 use crate::fabric::Coordinates;
 use crate::fabric::coordinates::BLOCK;
@@ -23,7 +24,7 @@ use crate::model::{FabricCard, Network, NodeId, PassId, SegmentKind, YarnCard, Y
 /// Differs from the paper: [Cirio2017, section 4.3] projects the forces on a fitted normal after offsetting the yarns
 /// by their radii. For clasped yarns the resultant needs no normal, has no sign to choose, and gives the capstan
 /// law (tests `capstan`, `a_belt_pulled_over_pegs_has_the_capstan_ratio`). Its Eq. 4, which sets negative compressions to
-/// zero one by one, is not the least-squares answer (test `stacks_press_by_least_squares`).
+/// zero one by one, is not the least-squares answer (test `least_squares::tests::stacks_press_by_least_squares`).
 ///
 /// The yarns of a weave are straight in the model and crimped in the fabric: a segment of length `l` and tension `T`
 /// between crossings on different sides goes through the fabric by the crimp height `h`, so that it presses its yarn on the
@@ -82,9 +83,6 @@ struct Contact {
     /// the first.
     side: Option<f64>,
 }
-
-/// Most yarns of a stack.
-const MOST_YARNS: usize = 8;
 
 /// The passes of a node of more than two yarns.
 #[derive(Clone, Copy, Debug)]
@@ -268,43 +266,6 @@ impl Stack {
     }
 }
 
-/// The non-negative `λ` of `min Σ (f_i − λ_i + λ_{i−1})²`: of all sets of contacts that may be open the one that is
-/// consistent and leaves least.
-fn stack_compressions(pulled: &[f64], lambda: &mut [f64]) {
-    let contacts = lambda.len();
-    let mut best = f64::INFINITY;
-    lambda.fill(0.0);
-    for closed in 0..1u32 << contacts {
-        let mut trial = [0.0; MOST_YARNS];
-        let mut first = 0;
-        // Closed contacts in a row press a group of yarns that shares what is left evenly.
-        while first <= contacts {
-            let mut last = first;
-            while last < contacts && closed >> last & 1 == 1 {
-                last += 1;
-            }
-            let group = &pulled[first..=last];
-            let mean = group.iter().sum::<f64>() / group.len() as f64;
-            let mut pressed = 0.0;
-            for k in first..last {
-                pressed += pulled[k] - mean;
-                trial[k] = pressed;
-            }
-            first = last + 1;
-        }
-        let left: f64 = (0..=contacts)
-            .map(|i| {
-                let (own, before) = (if i < contacts { trial[i] } else { 0.0 }, if i > 0 { trial[i - 1] } else { 0.0 });
-                (pulled[i] - own + before).powi(2)
-            })
-            .sum();
-        if trial[..contacts].iter().all(|&l| l >= 0.0) && left < best {
-            best = left;
-            lambda.copy_from_slice(&trial[..contacts]);
-        }
-    }
-}
-
 /// How a yarn pulls on a node.
 #[derive(Clone, Copy)]
 struct Pull {
@@ -462,29 +423,6 @@ mod tests {
         (q[7], q[12]) = (0.1, 0.1);
         compression.evaluate(&q, &mut out);
         assert!(out[0] < 0.95 * expected);
-    }
-
-    #[test]
-    fn stacks_press_by_least_squares() {
-        let press = |pulled: &[f64]| {
-            let mut lambda = vec![0.0; pulled.len() - 1];
-            stack_compressions(pulled, &mut lambda);
-            lambda
-        };
-        assert_eq!(press(&[2.0, -4.0]), [3.0]);
-        let three = press(&[4.0, 0.0, -2.0]);
-        assert!((three[0] - 10.0 / 3.0).abs() < 1e-12 && (three[1] - 8.0 / 3.0).abs() < 1e-12);
-        // Eq. 4 of the paper gives 8/3 and 4/3 here.
-        assert_eq!(press(&[4.0, 0.0, 2.0]), [2.0, 0.0]);
-        assert_eq!(press(&[-1.0, 1.0]), [0.0]);
-        // Against all directions: what is left cannot be lessened by any non-negative change.
-        let pulled = [3.0, -1.0, 0.5, -2.0];
-        let lambda = press(&pulled);
-        let left = |i: usize| pulled[i] - if i < 3 { lambda[i] } else { 0.0 } + if i > 0 { lambda[i - 1] } else { 0.0 };
-        for (k, &pressed) in lambda.iter().enumerate() {
-            let slope = left(k + 1) - left(k);
-            assert!(slope > -1e-12 && (pressed * slope).abs() < 1e-12, "contact {k}");
-        }
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! fabric have come near each other.
 
 pub mod compression;
+mod least_squares;
 pub mod nearby;
 pub mod surface;
 

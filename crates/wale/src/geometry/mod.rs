@@ -1,5 +1,6 @@
 //! The drawn shape of yarns: smooth curves through the nodes, offset by each pass's place in its stack.
 
+mod claspings;
 pub mod coloring;
 pub mod curve;
 pub mod obstacle_solid;
