@@ -2,8 +2,8 @@
 //! found on periodic tiles without friction.
 //!
 //! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [NAME=VALUE …] [--most-loops N]
-//! [--fit ROUNDS] [--lace]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
-//! `--fit` first fits the card again, from the numbers that it has or is given;
+//! [--fit ROUNDS] [--chart WORD] [--lace]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
+//! `--chart` predicts only those charts whose names have a word in them; `--fit` first fits the card again, from the numbers that it has or is given;
 //! `--lace` adds the charts of lace, with the same card. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
 //! left out.
 
@@ -52,6 +52,9 @@ fn predict<'a>(swatches: &[&'a Swatch], card: &LoopProportions) -> Vec<Predicted
 }
 
 fn print(title: &str, all: &[Predicted<'_>]) {
+    if all.is_empty() {
+        return;
+    }
     println!("{title}");
     for one in all {
         let ([w, h], [mw, mh]) = (one.size, one.measured());
@@ -137,11 +140,12 @@ fn set(card: &mut LoopProportions, name: &str, value: &str) -> Result<(), String
 fn run() -> Result<(), String> {
     let mut path = None;
     let (mut card, mut most, mut rounds) = (LoopProportions::thick(), usize::MAX, 0);
-    let mut lace = false;
+    let (mut lace, mut word) = (false, None);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
+        let mut text = || arguments.next().ok_or(format!("{argument} without a value"));
         let mut number = || {
-            let text = arguments.next().ok_or(format!("{argument} without a number"))?;
+            let text = text()?;
             text.parse::<usize>().map_err(|error| format!("{argument} {text}: {error}"))
         };
         match argument.as_str() {
@@ -149,6 +153,7 @@ fn run() -> Result<(), String> {
             "thick" => card = LoopProportions::thick(),
             "--most-loops" => most = number()?,
             "--lace" => lace = true,
+            "--chart" => word = Some(text()?),
             "--fit" => rounds = number()?,
             _ => match argument.split_once('=') {
                 Some((name, value)) => set(&mut card, name, value)?,
@@ -167,15 +172,17 @@ fn run() -> Result<(), String> {
             println!("  {} = {:.4}", number.name, *(number.place)(&mut card.clone()));
         }
     }
-    let small = |swatch: &&Swatch| swatch.repeat.loop_count() <= most;
+    let asked = |swatch: &&Swatch| {
+        swatch.repeat.loop_count() <= most && word.as_ref().is_none_or(|word| swatch.name.contains(word))
+    };
     let [wale, course] = spacing(&Model::new(card.clone()).relaxed(&wale::pattern::Chart::stockinette())).map(f64::exp);
     println!("stockinette: wale {wale:.4}, course {course:.4} of the length of a loop");
-    print("fitted charts", &predict(&known, &card));
-    let others: Vec<&Swatch> = all.iter().filter(|swatch| !swatch.fitted).filter(small).collect();
+    let (fitted, others): (Vec<&Swatch>, Vec<&Swatch>) = all.iter().filter(asked).partition(|swatch| swatch.fitted);
+    print("fitted charts", &predict(&fitted, &card));
     print("other charts", &predict(&others, &card));
     if lace {
         let all = read(&path, Kind::Lace)?;
-        print("charts of lace", &predict(&all.iter().filter(small).collect::<Vec<_>>(), &card));
+        print("charts of lace", &predict(&all.iter().filter(asked).collect::<Vec<_>>(), &card));
     }
     Ok(())
 }

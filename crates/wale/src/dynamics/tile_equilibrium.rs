@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::tile_system::TileSystem;
+use super::tile_system::{Step, TileSystem};
 use crate::fabric::TileCoordinates;
 use crate::fabric::coordinates::BLOCK;
 use crate::model::{KnitCard, Network, Yarns};
@@ -202,6 +202,10 @@ const LEAST_CONVEXITY: f64 = 0.02;
 const SOME_CONVEXITY: f64 = 0.125;
 /// Largest move of a coordinate in a step, in loop lengths.
 const LONGEST_MOVE: f64 = 0.05;
+/// Part of the foreseen gain below which a shorter step is tried, how much shorter, and the last one.
+const LEAST_TRUST: f64 = 0.1;
+const SHORTER: f64 = 0.4;
+const SHORTEST_PART: f64 = 0.1;
 
 impl Descent<'_> {
     fn run(&mut self) {
@@ -236,13 +240,30 @@ impl Descent<'_> {
                 }
                 continue;
             };
-            let part = self.system.longest_step(&self.unknowns, &step.direction, LONGEST_MOVE * self.length);
+            if self.follow(&step) {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Goes along a step as far as it lowers the energy; whether it did. Along a step that goes too far a shorter one often does:
+    /// barriers make the energy rise steeply behind a minimum that the second derivatives foresee, and to shift them instead
+    /// turns the direction away from it.
+    fn follow(&mut self, step: &Step) -> bool {
+        let longest = self.system.longest_step(&self.unknowns, &step.direction, LONGEST_MOVE * self.length);
+        let mut part = longest;
+        loop {
             let trial: Vec<f64> = self.unknowns.iter().zip(&step.direction).map(|(u, d)| u + part * d).collect();
             let predicted = -part * step.slope - 0.5 * part * part * step.curvature;
             let gained = self.energy - self.system.energy(&trial);
             // Close to rest the energy no longer resolves the step: trust Newton there.
             let resolved = predicted > 1e-12 * self.energy.abs();
             let trust = if resolved { gained / predicted } else { 1.0 };
+            if (trust.is_nan() || trust < LEAST_TRUST) && part > SHORTEST_PART * longest {
+                part *= SHORTER;
+                continue;
+            }
             if trust > 0.75 && part > 0.9 {
                 self.shift *= 0.2;
                 self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
@@ -253,7 +274,7 @@ impl Descent<'_> {
                 self.unknowns = trial;
                 return true;
             }
+            return false;
         }
-        false
     }
 }
