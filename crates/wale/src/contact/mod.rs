@@ -3,7 +3,9 @@
 
 pub mod compression;
 pub mod nearby;
+pub mod strands;
 pub mod surface;
 
 pub use compression::Compression;
 pub use nearby::Nearby;
+pub use strands::Strands;

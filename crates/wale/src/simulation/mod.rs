@@ -221,6 +221,7 @@ impl Simulation {
         self.system.find_touches(&self.plan.obstacles, &self.state, h, &mut self.touches);
         if settings.self_contact {
             self.system.find_self_contacts(&self.state, h);
+            self.system.find_strand_contacts(&self.state, h);
         }
         self.free.copy_from_slice(self.system.coordinates.free());
         // Start where the velocities lead, as far as the order of the nodes along the yarns allows.
@@ -244,6 +245,9 @@ impl Simulation {
         })?;
         if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.least_radius() {
             return Err(StepError::NotConverged { last_move: report.last_move });
+        }
+        if self.system.strands_pass(&self.state.coordinates, &self.q) {
+            return Err(StepError::Passage);
         }
         Ok(report)
     }
