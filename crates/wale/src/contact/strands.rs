@@ -1,5 +1,7 @@
 //! Strands of yarn that come near each other between their nodes, where no contact of the network joins them.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -8,7 +10,7 @@ use crate::energy::strand_contact::closest;
 use crate::model::{Network, NodeId, PassId, Yarns};
 
 /// Distance at which strands begin to push each other apart, as a share of that at which they touch.
-const BEGINS: f64 = 0.75;
+const BEGINS: f64 = 0.9;
 /// The same as a share of their distance in the layout, so that the layout is not pushed apart.
 const OF_LAYOUT: f64 = 0.8;
 /// Strands nearer than this share of touching in the layout lie through each other there: nothing tells them apart.
@@ -16,6 +18,8 @@ const NOTHING: f64 = 0.02;
 /// How much further than needed strands are looked for, and the most that their speed adds to it, in yarn radii.
 const MARGIN: f64 = 0.7;
 const MOST_MARGIN: f64 = 4.0;
+/// How far the yarns of a stitch contact lie aside of its axis, in yarn radii: they are led around each other.
+const ASIDE: f64 = 0.7;
 /// Below this share of the flattest possible fit, a node's own normal gives way to its neighbours'.
 const TRUSTED: f64 = 0.05;
 
@@ -39,8 +43,18 @@ struct Strand {
     /// How far in front of the nodes it lies \[m\].
     heights: [f64; 2],
     radius: f64,
+    /// How far it is led aside in a stitch contact, to the left of its way as seen from the front \[m\].
+    aside: f64,
     /// Where it lies in the layout.
     layout: [DVec3; 2],
+}
+
+impl Strand {
+    /// Where its ends lie beside their nodes, which are at `ends` and have these normals.
+    fn offsets(&self, ends: [DVec3; 2], normals: [DVec3; 2]) -> [DVec3; 2] {
+        let left = (normals[0] + normals[1]).cross(ends[1] - ends[0]).normalize_or_zero();
+        std::array::from_fn(|k| normals[k] * self.heights[k] + left * self.aside)
+    }
 }
 
 /// The segments of a fabric in which some yarn is held by fewer or more contacts than in a plain one: it has yarn-overs,
@@ -84,6 +98,7 @@ impl Strands {
                 heights[pass.index()] = 0.5 * thickness - above + radius(pass);
             }
         }
+        let to_the_left = clasps(network);
         let mut strands = Vec::new();
         let mut pairs = Vec::new();
         for pass in (0..network.pass_count()).map(PassId::new) {
@@ -94,18 +109,17 @@ impl Strands {
             if nodes[0] == nodes[1] {
                 continue;
             }
-            let heights = ends.map(|pass| heights[pass.index()]);
-            let place = |k: usize| {
-                let node: NodeId = nodes[k];
-                network.position[node.index()] + network.front[node.index()] * heights[k]
-            };
-            strands.push(Strand {
+            let mut strand = Strand {
                 nodes: nodes.map(|node| node.0),
                 contacts: nodes.map(|node| contact[node.index()]),
-                heights,
+                heights: ends.map(|pass| heights[pass.index()]),
                 radius: radius(pass),
-                layout: [place(0), place(1)],
-            });
+                aside: ASIDE * radius(pass) * to_the_left[pass.index()],
+                layout: nodes.map(|node| network.position[node.index()]),
+            };
+            let offsets = strand.offsets(strand.layout, nodes.map(|node| network.front[node.index()]));
+            strand.layout = [0, 1].map(|k| strand.layout[k] + offsets[k]);
+            strands.push(strand);
             pairs.extend([(nodes[0], nodes[1]), (nodes[1], nodes[0])]);
         }
         pairs.sort_unstable_by_key(|(node, _)| node.0);
@@ -168,8 +182,14 @@ impl Strands {
             let fastest = [(0, 2), (0, 3), (1, 2), (1, 3)].map(|(i, k)| (ways[i] - ways[k]).length_squared());
             let moved = fastest.into_iter().fold(0.0, f64::max).sqrt();
             let margin = MARGIN * touching + (1.5 * moved).min(MOST_MARGIN * 0.5 * touching);
-            let heights = [a.heights[0], a.heights[1], b.heights[0], b.heights[1]];
-            let offsets: [DVec3; 4] = std::array::from_fn(|k| normals[nodes[k] as usize] * heights[k]);
+            let beside = |strand: &Strand| {
+                strand.offsets(
+                    strand.nodes.map(|node| at(node as usize)),
+                    strand.nodes.map(|node| normals[node as usize]),
+                )
+            };
+            let [[a0, a1], [b0, b1]] = [beside(a), beside(b)];
+            let offsets = [a0, a1, b0, b1];
             let ends: [[f64; 3]; 4] = std::array::from_fn(|k| (at(nodes[k] as usize) + offsets[k]).to_array());
             // Boxes that are further apart than they look for each other need no closer look.
             let apart = (0..3).any(|k| {
@@ -183,8 +203,11 @@ impl Strands {
             let layout = [a.layout[0], a.layout[1], b.layout[0], b.layout[1]].map(|x| x.to_array());
             let layout = closest(&layout).distance;
             let distance = (BEGINS * touching).min(OF_LAYOUT * layout);
-            (layout > NOTHING * touching)
-                .then_some(NearStrands { nodes, offsets: offsets.map(|x| x.to_array()), distance })
+            (layout > NOTHING * touching).then_some(NearStrands {
+                nodes,
+                offsets: offsets.map(|x| x.to_array()),
+                distance,
+            })
         };
         self.found.clear();
         self.found.par_extend(pairs.par_iter().with_min_len(1024).filter_map(near));
@@ -219,4 +242,28 @@ impl Strands {
             (normal * trust + sum.sum::<DVec3>().normalize_or_zero() * (1.0 - trust)).normalize_or_zero()
         }));
     }
+}
+
+/// On which side of the axis of a stitch contact the segment after each pass lies, seen from the front along its way: 1 to the
+/// left, −1 to the right, and zero outside contacts. A yarn that changes from the front of another to its back goes around it.
+fn clasps(network: &Network) -> Vec<f64> {
+    let mut sides = vec![0.0; network.pass_count()];
+    for stitch in &network.stitches {
+        let depth = |end: usize, pass: PassId| network.live_stack(stitch.nodes[end]).position(|p| p == pass);
+        let depths: Vec<_> = stitch.passes.iter().map(|[a, b]| [depth(0, *a), depth(1, *b)]).collect();
+        for ([a, b], own) in stitch.passes.iter().zip(&depths) {
+            let turns = depths.iter().map(|other| match (own[0].cmp(&other[0]), own[1].cmp(&other[1])) {
+                (Ordering::Less, Ordering::Greater) => 1.0,
+                (Ordering::Greater, Ordering::Less) => -1.0,
+                _ => 0.0,
+            });
+            let turns: f64 = turns.sum();
+            if turns != 0.0 {
+                // Along the axis from the first node to the second, left is what the drawn yarn is led to.
+                let along = if a.0 < b.0 { 1.0 } else { -1.0 };
+                sides[a.0.min(b.0) as usize] = along * turns.signum() * stitch.wrap_sign;
+            }
+        }
+    }
+    sides
 }
