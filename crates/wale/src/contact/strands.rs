@@ -18,6 +18,8 @@ const NOTHING: f64 = 0.02;
 /// How much further than needed strands are looked for, and the most that their speed adds to it, in yarn radii.
 const MARGIN: f64 = 0.7;
 const MOST_MARGIN: f64 = 4.0;
+/// Pairs of a part.
+const PART: usize = 8192;
 /// How far the yarns of a stitch contact lie aside of its axis, in yarn radii: they are led around each other.
 const ASIDE: f64 = 0.7;
 /// Below this share of the flattest possible fit, a node's own normal gives way to its neighbours'.
@@ -70,6 +72,8 @@ pub struct Strands {
     fits: Vec<(DVec3, f64)>,
     normals: Vec<DVec3>,
     nearby: Nearby,
+    /// What was found by parts of the pairs, and all of it.
+    parts: Vec<Vec<NearStrands>>,
     found: Vec<NearStrands>,
 }
 
@@ -137,6 +141,7 @@ impl Strands {
             fits: Vec::new(),
             normals: Vec::new(),
             nearby: Nearby::default(),
+            parts: Vec::new(),
             found: Vec::new(),
             strands,
         }
@@ -209,8 +214,13 @@ impl Strands {
                 distance,
             })
         };
+        self.parts.resize_with(pairs.len().div_ceil(PART), Vec::new);
+        self.parts.par_iter_mut().zip(pairs.par_chunks(PART)).for_each(|(part, pairs)| {
+            part.clear();
+            part.extend(pairs.iter().filter_map(near));
+        });
         self.found.clear();
-        self.found.par_extend(pairs.par_iter().with_min_len(1024).filter_map(near));
+        self.found.extend(self.parts.iter().flatten());
         &self.found
     }
 
