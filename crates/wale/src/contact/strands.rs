@@ -224,7 +224,7 @@ impl Strands {
         &self.found
     }
 
-    /// Normals of all nodes to the front of the fabric: as [`crate::geometry`] draws them.
+    /// Normals of all nodes to the front of the fabric, as pictures of yarns have them.
     fn find_normals(&mut self, at: &impl Fn(usize) -> DVec3) {
         let around = |node: usize| {
             let range = self.around_start[node] as usize..self.around_start[node + 1] as usize;

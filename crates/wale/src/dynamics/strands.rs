@@ -9,8 +9,8 @@ use super::system::System;
 use crate::energy::StrandContact;
 use crate::fabric::coordinates::{BLOCK, dof};
 
-/// Depth at which strands carry a thousand times the weight of the yarn at their nodes, in yarn radii.
-const WEIGHTS: f64 = 1e3;
+/// Times the weight of the yarn at their nodes that strands carry about one yarn radius deep.
+const WEIGHTS: f64 = 3e3;
 /// Part of the way to where two strands would meet that a step may go.
 const PART: f64 = 0.7;
 /// Parts of a step that are looked at to find where two strands meet.
@@ -31,7 +31,8 @@ impl System {
         set.stencils.clear();
         for near in found {
             let mass: f64 = near.nodes.iter().map(|&node| 0.5 * self.mass_at_node[node as usize]).sum();
-            let stiffness = (WEIGHTS * mass * 9.81 / self.least_radius).max(0.1 * mass / (h * h));
+            // The same in steps of any length: strands that are close would be thrown apart if it grew.
+            let stiffness = WEIGHTS * mass * 9.81 / self.least_radius;
             let first = near.nodes.map(|node| dof(BLOCK * node as usize));
             let stencil = std::array::from_fn(|i| first[i / 3] + (i % 3) as u32);
             set.push(StrandContact { stiffness, distance: near.distance, offsets: near.offsets }, stencil);
