@@ -11,6 +11,7 @@ mod scatter;
 mod selected;
 pub mod state;
 pub mod step;
+mod strands;
 mod surroundings;
 pub mod system;
 pub mod terms;

@@ -9,10 +9,10 @@ use wale_numerics::block_pattern::BlockPattern;
 
 use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
-use crate::contact::{Compression, Nearby};
+use crate::contact::{Compression, Nearby, Strands};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, LegContact, Load, ObstacleContact, ParallelSpring,
-    Rate, SelfContact, Shear, Spacing, StitchLength, Stretch, Thick, Wrapping,
+    Rate, SelfContact, Shear, Spacing, StitchLength, StrandContact, Stretch, Thick, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -53,6 +53,7 @@ pub struct System {
     pub(super) parallel: Term<ParallelSpring, 2>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
     pub(super) self_contacts: Term<SelfContact, 6>,
+    pub(super) strand_contacts: Term<StrandContact, 12>,
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
     pub(super) compression: Compression,
@@ -66,12 +67,13 @@ pub struct System {
     /// Where the nodes lie in the layout \[m\], and who has come near whom since.
     pub(super) layout: Vec<DVec3>,
     pub(super) nearby: Nearby,
+    pub(super) strands: Strands,
     /// Planar places of blocks for a coarse space: columns and rows of the chart.
     pub(super) chart_place: Vec<[f64; 2]>,
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 16;
+pub(super) const TERMS: usize = 17;
 
 /// Scratch memory of sums.
 #[derive(Default)]
@@ -91,7 +93,7 @@ struct ChunkWork {
 pub type Energies = [(&'static str, f64); KINDS.len()];
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 15] = [
+const KINDS: [&str; 16] = [
     Stretch::NAME,
     Bending::NAME,
     LegContact::NAME,
@@ -107,6 +109,7 @@ const KINDS: [&str; 15] = [
     Rate::NAME,
     ObstacleContact::NAME,
     SelfContact::NAME,
+    StrandContact::NAME,
 ];
 
 impl System {
@@ -205,7 +208,9 @@ impl System {
             parallel: Term::new(parallel, &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             self_contacts: Term::new(Elements::default(), &chunks),
+            strand_contacts: Term::new(Elements::default(), &chunks),
             nearby: Nearby::default(),
+            strands: Strands::default(),
             layout: network.position.clone(),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
@@ -276,6 +281,7 @@ impl System {
             &self.parallel,
             &self.obstacles,
             &self.self_contacts,
+            &self.strand_contacts,
             &self.loads,
             &self.bed,
         ]
@@ -346,7 +352,7 @@ impl System {
     pub fn longest_step(&self, q: &[f64], direction: &[f64]) -> f64 {
         let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
         let longest = segments.map(|stencil| longest_step(stencil, q, |dof| direction[dof]));
-        longest.reduce(|| f64::INFINITY, f64::min).min(1.0)
+        longest.reduce(|| f64::INFINITY, f64::min).min(self.longest_way(q, direction))
     }
 
     /// As [`System::longest_step`], for some segments.
