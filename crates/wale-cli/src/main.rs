@@ -29,6 +29,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Resume(arguments) => commands::resume::resume(arguments),
         Command::Relax(arguments) => commands::relax::relax(arguments),
+        Command::Fit(arguments) => commands::fit::fit(arguments),
         Command::Inspect(arguments) => commands::inspect::inspect(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
         Command::Plot(arguments) => commands::plot::plot(arguments),

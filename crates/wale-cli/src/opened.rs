@@ -103,7 +103,7 @@ fn plain_network(scene: &Scene) -> Network {
 }
 
 /// An error in a scene, with the code of its class.
-fn scene_failure(error: SceneError) -> Failure {
+pub fn scene_failure(error: SceneError) -> Failure {
     let code = match error.class() {
         ErrorClass::BadInput => Code::BadInput,
         ErrorClass::ResourceLimit => Code::ResourceLimit,

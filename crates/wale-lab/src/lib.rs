@@ -1,5 +1,9 @@
 //! The fabric lab: textile tests on thin shells and on periodic yarn tiles, and models fitted to what was measured
 //! [Sperl2022].
 
+pub mod card_file;
+pub mod curve;
+pub mod fabric_file;
+pub mod fabric_fit;
 pub mod shell;
 pub mod yarn_tile;

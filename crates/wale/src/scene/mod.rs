@@ -26,27 +26,23 @@ mod resolve;
 pub mod schema;
 #[cfg(test)]
 mod tests;
+mod text_file;
 pub mod units;
 mod write;
 
-use std::fs::File;
-use std::io::Read;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 pub use error::{ErrorClass, SceneError};
+pub use text_file::TextFile;
 
 use crate::model::{FabricCard, Network, Plan, YarnId, Yarns};
 use crate::pattern::Structure;
-use error::{Complaint, nearest};
+use error::Complaint;
 use resolve::Failure;
 use schema::{PresetName, SceneText};
 
 /// Version of the scene format.
 pub const SCHEMA: u32 = 1;
-
-/// Most bytes of a scene file.
-pub const LARGEST_FILE: usize = 16 << 20;
 
 /// A scene: all that a run needs, in SI units.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,9 +99,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::read`].
     pub fn read_with_inputs(path: &Path) -> Result<SceneFile, SceneError> {
-        let name = path.display().to_string();
-        let text = read_text(path).map_err(|complaint| SceneError::new(complaint, &name, "", None))?;
-        let (scene, mut inputs) = interpret(&text, &name, path.parent())?;
+        let (scene, mut inputs) = interpret(&TextFile::read(path, "scene")?)?;
         inputs.insert(0, path.to_owned());
         Ok(SceneFile { scene, inputs })
     }
@@ -115,7 +109,7 @@ impl Scene {
     /// # Errors
     /// If something in the text is wrong.
     pub fn from_text(text: &str, name: &str) -> Result<Self, SceneError> {
-        interpret(text, name, None).map(|(scene, _)| scene)
+        interpret(&TextFile::new(text, name)).map(|(scene, _)| scene)
     }
 
     /// The scene written out in full, defaults and presets resolved, in SI units. Reading it gives the same scene.
@@ -151,74 +145,10 @@ pub fn text_of_preset(preset: PresetName) -> String {
     )
 }
 
-fn read_text(path: &Path) -> Result<String, Complaint> {
-    let failed = |error: std::io::Error| {
-        let complaint = Complaint::new("", format!("the scene cannot be read: {error}"));
-        match error.kind() {
-            std::io::ErrorKind::NotFound => complaint.mend("check the name, or write a scene with `wale new`"),
-            std::io::ErrorKind::IsADirectory => complaint.mend("name a .toml file"),
-            _ => complaint.class(ErrorClass::InputOutput),
-        }
-    };
-    let mut bytes = Vec::new();
-    let limit = LARGEST_FILE as u64 + 1;
-    File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes)).map_err(failed)?;
-    if bytes.len() > LARGEST_FILE {
-        let what = format!("the scene is larger than {LARGEST_FILE} bytes");
-        return Err(Complaint::new("", what).class(ErrorClass::ResourceLimit));
-    }
-    String::from_utf8(bytes).map_err(|_| Complaint::new("", "the scene is not text in UTF-8"))
-}
-
-fn interpret(text: &str, name: &str, directory: Option<&Path>) -> Result<(Scene, Vec<PathBuf>), SceneError> {
-    // A byte order mark is no part of the scene.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let parsed: SceneText = toml::from_str(text).map_err(|error| {
-        let (complaint, span) = explained(&error);
-        SceneError::new(complaint, name, text, span)
-    })?;
-    resolve::scene(&parsed, directory).map_err(|failure| match failure {
+fn interpret(file: &TextFile) -> Result<(Scene, Vec<PathBuf>), SceneError> {
+    let parsed: SceneText = file.parse()?;
+    resolve::scene(&parsed, file.directory()).map_err(|failure| match failure {
         Failure::Elsewhere(error) => *error,
-        Failure::Here(complaint) => {
-            let span = locate::span_of(text, &complaint.path);
-            SceneError::new(complaint, name, text, span)
-        }
+        Failure::Here(complaint) => file.complain(complaint),
     })
-}
-
-/// The reader's message with a mend: after a line break where our own types gave one, the nearest word where it lists
-/// the words that it knows.
-fn explained(error: &toml::de::Error) -> (Complaint, Option<Range<usize>>) {
-    let message = error.message();
-    let (what, mend) = match message.split_once('\n') {
-        Some((what, mend)) => (what, Some(mend.replace('\n', " "))),
-        None => (message, None),
-    };
-    let mut quoted = what.split('`').skip(1).step_by(2);
-    let mut complaint = Complaint::new("", what);
-    let unknown_key = what.starts_with("unknown field");
-    if unknown_key || what.starts_with("unknown variant") {
-        let word = quoted.next().unwrap_or_default();
-        let known: Vec<&str> = quoted.collect();
-        let kind = if unknown_key { "key" } else { "value" };
-        complaint = Complaint::new("", format!("unknown {kind} `{}`", error::shortened(word)));
-        complaint = complaint.why(if unknown_key { "no such key here" } else { "no such value here" });
-        let list = known.join(", ");
-        complaint = complaint.mend(match nearest(word, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`? known here: {list}"),
-            None => format!("known here: {list}"),
-        });
-    } else if let Some(key) = what.strip_prefix("missing field").and(quoted.next()) {
-        complaint = Complaint::new("", format!("`{key}` is missing")).mend(match key {
-            "schema" => format!("write schema = {SCHEMA} in the first line"),
-            "fabric" => "add [fabric.chart] with pattern = \"garter\", columns = 20 and rows = 20".to_owned(),
-            key => format!("add {key} = …"),
-        });
-        // The reader points at everything that lacks the key; where that is the whole file, at nothing.
-        let whole = key == "schema" || key == "fabric";
-        return (complaint, error.span().filter(|_| !whole));
-    } else if let Some(mend) = mend {
-        complaint = complaint.mend(mend);
-    }
-    (complaint, error.span())
 }

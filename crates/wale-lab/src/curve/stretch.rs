@@ -1,0 +1,117 @@
+//! A stretch test: force, stretch and orthogonal compression [Sperl2022, section 4.3].
+
+use super::columns::{Column, Meaning, column, rows};
+use super::{CurveError, Request, Table};
+
+/// Fewest samples of a curve.
+const FEWEST: usize = 3;
+/// Largest stretch that is believed: the fabric is a thing of this world \[–\].
+const LARGEST_STRETCH: f64 = 10.0;
+
+/// A rectangular specimen without what is clamped \[m\].
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Specimen {
+    /// Along the pull.
+    pub length: f64,
+    /// Across it.
+    pub width: f64,
+}
+
+/// A measured curve of a stretch test, in order of stretch.
+#[derive(Clone, PartialEq, Debug)]
+pub struct StretchCurve {
+    /// Deformed over undeformed length, less one \[–\].
+    pub stretch: Vec<f64>,
+    /// Force on the clamps \[N\].
+    pub force: Vec<f64>,
+    /// One less deformed over undeformed width \[–\], if it was measured.
+    pub compression: Option<Vec<f64>>,
+    /// How each column was read, to be shown to whoever asked.
+    pub read_as: Vec<String>,
+}
+
+impl StretchCurve {
+    /// The curve that a table holds.
+    ///
+    /// # Errors
+    /// If columns are missing, a cell is no finite number, stretch decreases, or there are fewer than three samples.
+    pub fn of(table: &Table, request: &Request, specimen: Specimen) -> Result<Self, CurveError> {
+        let of = |meaning| column(table, request, meaning);
+        let (stretch, by_length) = match of(Meaning::Stretch)? {
+            Some(column) => (column, false),
+            None => (needed(table, of(Meaning::Extension)?, "stretch or extension")?, true),
+        };
+        let (force, by_width) = match of(Meaning::Force)? {
+            Some(column) => (column, false),
+            None => (needed(table, of(Meaning::LineForce)?, "force or line_force")?, true),
+        };
+        let across = [Meaning::Compression, Meaning::TransverseStrain, Meaning::Width];
+        let mut transverse = None;
+        for meaning in across {
+            if transverse.is_none() {
+                transverse = of(meaning)?.map(|column| (meaning, column));
+            }
+        }
+        let mut curve = Self {
+            stretch: Vec::new(),
+            force: Vec::new(),
+            compression: transverse.is_some().then(Vec::new),
+            read_as: [Some(&stretch), Some(&force), transverse.as_ref().map(|(_, column)| column)]
+                .into_iter()
+                .flatten()
+                .map(|column: &Column| column.read_as.clone())
+                .collect(),
+        };
+        for row in rows(table, request)? {
+            let line = Some(row.0);
+            let s = stretch.value(table, row)? / if by_length { specimen.length } else { 1.0 };
+            if let Some(&before) = curve.stretch.last()
+                && s < before
+            {
+                let what = format!("stretch falls from {before:.4} to {s:.4}");
+                return Err(table.error(line, what, "give the loading branch of one trial alone, or choose rows with `only`"));
+            }
+            if !(s > -1.0 && s < LARGEST_STRETCH) {
+                let what = format!("a stretch of {s:.3} cannot be");
+                return Err(table.error(line, what, "is the unit of that column right, and the specimen's length?"));
+            }
+            curve.stretch.push(s);
+            curve.force.push(force.value(table, row)? * if by_width { specimen.width } else { 1.0 });
+            if let (Some(values), Some((meaning, column))) = (&mut curve.compression, &transverse) {
+                let value = column.value(table, row)?;
+                values.push(match meaning {
+                    Meaning::Width => 1.0 - value / specimen.width,
+                    Meaning::TransverseStrain => -value,
+                    _ => value,
+                });
+            }
+        }
+        if curve.stretch.len() < FEWEST {
+            let what = format!("has {} samples", curve.stretch.len());
+            return Err(table.error(None, what, "a curve needs three"));
+        }
+        Ok(curve)
+    }
+
+    /// Force \[N\] and compression \[–\] at a stretch, linear between samples and held beyond them.
+    #[must_use]
+    pub fn at(&self, stretch: f64) -> (f64, Option<f64>) {
+        let right = self.stretch.partition_point(|s| *s < stretch).clamp(1, self.stretch.len() - 1);
+        let (a, b) = (self.stretch[right - 1], self.stretch[right]);
+        let part = if b > a { ((stretch - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
+        let between = |values: &[f64]| values[right - 1] + part * (values[right] - values[right - 1]);
+        (between(&self.force), self.compression.as_deref().map(between))
+    }
+}
+
+pub(super) fn needed(table: &Table, found: Option<Column>, what: &str) -> Result<Column, CurveError> {
+    found.ok_or_else(|| {
+        let heads: Vec<String> = table.heads().iter().filter(|head| !head.is_empty()).cloned().collect();
+        let mend = if heads.is_empty() {
+            format!("it has no heads: give columns = {{ {} = NUMBER }}", what.split(' ').next().unwrap_or_default())
+        } else {
+            format!("say which it is: columns = {{ … = \"{}\" }}", heads[0])
+        };
+        table.error(None, format!("no column is recognised as {what}"), mend)
+    })
+}

@@ -1,0 +1,158 @@
+//! Fabric files: what is known of a real fabric, in TOML, with the tables of its tests beside it [Sperl2022, section 4.4].
+//!
+//! ```toml
+//! schema = 1
+//! title = "Single jersey"
+//! areal_mass = "170 g/m^2"
+//!
+//! [[yarn]]
+//! name = "polyester"
+//! linear_density = "72 den"
+//! filaments = 75
+//! share = "90 %"
+//!
+//! [structure]
+//! scene = "jersey.toml"
+//!
+//! [[stretch]]
+//! direction = "weft"
+//! file = "weft.csv"
+//! length = "100 mm"
+//! width = "60 mm"
+//! ```
+
+mod resolve;
+mod schema;
+
+pub use schema::ArealMass;
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+use wale::scene::{ErrorClass, Scene, SceneError, TextFile};
+
+use crate::curve::{CurveError, LoopCurve, Specimen, StretchCurve};
+
+/// Version of the format.
+pub const SCHEMA: u32 = 1;
+
+/// A fabric and what was measured of it, in SI units.
+#[derive(Clone, Debug)]
+pub struct FabricFile {
+    /// What it is called, perhaps nothing.
+    pub title: String,
+    /// Mass per area \[kg/m²\], if known.
+    pub areal_mass: Option<f64>,
+    /// What it is made of.
+    pub yarns: Vec<Yarn>,
+    /// How its yarns lie, if known.
+    pub structure: Option<Structure>,
+    /// Stretch tests, by direction.
+    pub stretch: Vec<StretchTest>,
+    /// Pear-loop tests, by direction.
+    pub bending: Vec<LoopTest>,
+    /// The fabric file and all others that were opened for it.
+    pub inputs: Vec<PathBuf>,
+}
+
+/// A yarn of a fabric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Yarn {
+    /// What it is called.
+    pub name: String,
+    /// Mass by length \[kg/m\].
+    pub linear_density: f64,
+    /// Filaments in it, if known.
+    pub filaments: Option<u32>,
+    /// Part of the fabric's mass \[–\], if known.
+    pub share: Option<f64>,
+    /// Force for each strain up to 5 cN \[N\], if measured.
+    pub stiffness: Option<f64>,
+    /// What its fibres are coated with, if anything.
+    pub finish: Option<String>,
+}
+
+/// How yarns lie.
+#[derive(Clone, Debug)]
+pub enum Structure {
+    /// In a file with the geometry of a periodic tile.
+    Tile(PathBuf),
+    /// As the chart or draft of a scene is worked.
+    Scene(Box<Scene>),
+}
+
+/// A stretch test of one specimen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StretchTest {
+    /// Angle of the pull from the weft \[rad\].
+    pub direction: f64,
+    /// What was clamped.
+    pub specimen: Specimen,
+    /// What was measured.
+    pub curve: StretchCurve,
+}
+
+/// A pear-loop test of one specimen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoopTest {
+    /// Angle of the specimen's length from the weft \[rad\].
+    pub direction: f64,
+    /// What was clamped.
+    pub specimen: Specimen,
+    /// What was measured.
+    pub curve: LoopCurve,
+}
+
+/// Why a fabric cannot be had.
+#[derive(Clone, Debug, Error)]
+pub enum FabricFileError {
+    /// Something is wrong in the fabric file, or in a scene that it names.
+    #[error(transparent)]
+    Fabric(#[from] SceneError),
+    /// Something is wrong in a table that it names.
+    #[error(transparent)]
+    Curve(#[from] CurveError),
+}
+
+impl FabricFileError {
+    /// What kind of error this is.
+    #[must_use]
+    pub fn class(&self) -> ErrorClass {
+        match self {
+            Self::Fabric(error) => error.class(),
+            Self::Curve(_) => ErrorClass::BadInput,
+        }
+    }
+}
+
+impl FabricFile {
+    /// Reads a fabric file and what it names.
+    ///
+    /// # Errors
+    /// If one cannot be read, or something in them is wrong.
+    pub fn read(path: &Path) -> Result<Self, FabricFileError> {
+        resolve::fabric(path, &TextFile::read(path, "fabric file")?)
+    }
+
+    /// What the tests leave open, in words: directions that none was made in, and curves without compression.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<String> {
+        let mut gaps = Vec::new();
+        for (name, degrees) in DIRECTIONS {
+            let near = |direction: f64| (direction.to_degrees() - degrees).abs() < 1.0;
+            let of: Vec<_> = self.stretch.iter().filter(|test| near(test.direction)).collect();
+            if of.is_empty() {
+                gaps.push(format!("no stretch test along the {name}"));
+            } else if of.iter().all(|test| test.curve.compression.is_none()) {
+                gaps.push(format!("no orthogonal compression along the {name}"));
+            }
+            if !self.bending.iter().any(|test| near(test.direction)) {
+                gaps.push(format!("no bending test along the {name}"));
+            }
+        }
+        gaps
+    }
+}
+
+/// Directions with a name, and their angle from the weft \[°\].
+const DIRECTIONS: [(&str, f64); 3] = [("weft", 0.0), ("bias", 45.0), ("warp", 90.0)];

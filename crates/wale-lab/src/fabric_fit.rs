@@ -1,0 +1,101 @@
+//! The thin shell of a fabric file: what its tests tell of it, and how well [Sperl2022, section 5].
+
+use thiserror::Error;
+use wale::energy::BendingStiffness;
+
+use crate::card_file::ShellCardFile;
+use crate::fabric_file::FabricFile;
+use crate::shell::bending_fit::{BendingFit, PearCurve, fit_bending};
+use crate::shell::membrane_fit::{MembraneFit, MembraneFitSettings, StretchTest, fit_membrane};
+use crate::shell::stretch_curve::{StretchCurve, StretchPoint};
+use crate::shell::{ClampedStretch, PearLoop, ShellCard, ShellError};
+
+/// Edge of the mesh over the smaller side of a specimen \[–\].
+const EDGE: f64 = 1.0 / 15.0;
+
+/// What was fitted.
+#[derive(Clone, Debug)]
+pub struct FabricFit {
+    /// In-plane stiffnesses, by clamped stretch tests of the specimens' sizes.
+    pub membrane: MembraneFit,
+    /// Bending stiffnesses, if loops were measured and the mass is known.
+    pub bending: Option<BendingFit>,
+    /// The card of both.
+    pub card: ShellCardFile,
+    /// What stays open, in words.
+    pub open: Vec<String>,
+}
+
+/// Why nothing was fitted.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FabricFitError {
+    /// There is no stretch test.
+    #[error("the fabric has no stretch test to fit; add one as [[stretch]] with direction and file")]
+    NoStretchTest,
+    /// The shell could not be fitted.
+    #[error(transparent)]
+    Shell(#[from] ShellError),
+}
+
+/// Fits a thin shell to the tests of a fabric.
+///
+/// # Errors
+/// [`FabricFitError`].
+pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<FabricFit, FabricFitError> {
+    if fabric.stretch.is_empty() {
+        return Err(FabricFitError::NoStretchTest);
+    }
+    let mut open = fabric.gaps();
+    let measured: Vec<(StretchCurve, StretchTest)> = fabric
+        .stretch
+        .iter()
+        .map(|test| {
+            let zeros = vec![0.0; test.curve.stretch.len()];
+            let compression = test.curve.compression.as_ref().unwrap_or(&zeros);
+            let points = test.curve.stretch.iter().zip(&test.curve.force).zip(compression);
+            let mut points: Vec<StretchPoint> = points
+                .map(|((&stretch, &force), &compression)| StretchPoint { stretch, force, compression })
+                .filter(|point| point.stretch > 0.0)
+                .collect();
+            points.dedup_by(|b, a| b.stretch <= a.stretch);
+            let size = test.specimen;
+            let clamped = ClampedStretch {
+                length: size.length,
+                width: size.width,
+                angle: test.direction,
+                edge: EDGE * size.length.min(size.width),
+                ..ClampedStretch::default()
+            };
+            (StretchCurve { angle: test.direction, points }, StretchTest::Clamped(clamped))
+        })
+        .collect();
+    let membrane = fit_membrane(&measured, settings)?;
+    open.extend(membrane.undetermined().iter().map(|name| format!("{name} is not determined by these tests")));
+    let bending = match fabric.areal_mass {
+        _ if fabric.bending.is_empty() => None,
+        None => {
+            open.push("bending is not fitted: loops tell it by their weight, and areal_mass is not given".to_owned());
+            None
+        }
+        Some(areal_mass) => {
+            let card = ShellCard { membrane: membrane.stiffness, bending: BendingStiffness::isotropic(0.0), areal_mass };
+            let curves: Vec<PearCurve> = fabric.bending.iter().map(|test| PearCurve {
+                angle: test.direction,
+                points: test.curve.distance.iter().zip(&test.curve.aspect_ratio).map(|(&d, &r)| [d, r]).collect(),
+            }).collect();
+            let size = fabric.bending[0].specimen;
+            let test = PearLoop { length: size.length, width: size.width, edge: EDGE * size.width, ..PearLoop::default() };
+            let fit = fit_bending(&curves, &card, &test, settings.least_noise)?;
+            open.extend(fit.undetermined().iter().map(|name| format!("{name} is not determined by these tests")));
+            Some(fit)
+        }
+    };
+    let card = ShellCardFile {
+        title: fabric.title.clone(),
+        areal_mass: fabric.areal_mass,
+        membrane: membrane.stiffness,
+        membrane_within: membrane.least_squares.uncertainty,
+        bending: bending.as_ref().map(|fit| fit.stiffness),
+    };
+    Ok(FabricFit { membrane, bending, card, open })
+}
