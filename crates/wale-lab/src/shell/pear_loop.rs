@@ -53,7 +53,7 @@ pub struct PearPoint {
     pub distance: f64,
     /// Height of the loop from the clamps down \[m\].
     pub height: f64,
-    /// Width of the loop \[m\].
+    /// Width of the loop, at least the distance of the clamps \[m\].
     pub width: f64,
     /// `h/p`: height over width \[–\].
     pub aspect: f64,
@@ -152,7 +152,8 @@ fn measure(system: &mut ShellSystem, rectangle: &Rectangle, q: &[f64], distance:
     };
     let line =
         |axis: usize, sign: f64| -> Vec<f64> { (0..rectangle.rows.len()).map(|row| sign * mean(row, axis)).collect() };
-    let (bottom, right, left) = (largest(&line(2, -1.0)), largest(&line(0, 1.0)), largest(&line(0, -1.0)));
+    let bottom = largest(&line(2, -1.0), 0.0);
+    let (right, left) = (largest(&line(0, 1.0), distance), largest(&line(0, -1.0), 0.0));
     let (height, width) = (bottom.value, right.value + left.value);
     let aspect = height / width;
 
@@ -171,11 +172,12 @@ fn measure(system: &mut ShellSystem, rectangle: &Rectangle, q: &[f64], distance:
     Ok(PearPoint { distance, height, width, aspect, aspect_slope })
 }
 
-/// The largest value of a line, by the parabola through its largest vertex and both neighbours.
-fn largest(line: &[f64]) -> Extreme {
-    let top = (0..line.len()).fold(0, |top, k| if line[k] > line[top] { k } else { top });
-    if top == 0 || top + 1 == line.len() {
-        return Extreme { value: line[top], rows: vec![(top, 1.0)] };
+/// The largest value of a line between the clamps, by the parabola through its largest free vertex and both neighbours; the
+/// clamps' ends, where the line lies nowhere beyond them.
+fn largest(line: &[f64], clamps: f64) -> Extreme {
+    let top = (2..line.len() - 2).fold(2, |top, k| if line[k] > line[top] { k } else { top });
+    if line[top] <= clamps {
+        return Extreme { value: clamps, rows: Vec::new() };
     }
     let (before, here, after) = (line[top - 1], line[top], line[top + 1]);
     let bend = after - 2.0 * here + before;
@@ -207,7 +209,8 @@ mod tests {
         assert!((aspect(&floating, 1e-6) / aspect(&floating, 4e-6) - 1.0).abs() < 1e-3);
         // Standing upon its clamps a loop sags, hanging it is drawn long.
         let standing = PearLoop { gravity: [0.0, 0.0, 9.81], ..test };
-        assert!(aspect(&standing, 5e-6) < aspect(&floating, 5e-6) && aspect(&floating, 5e-6) < aspect(&test, 5e-6));
+        let [standing, floating, hanging] = [standing, floating, test].map(|test| aspect(&test, 2e-5));
+        assert!(standing < floating && floating < hanging, "{standing} {floating} {hanging}");
     }
 
     #[test]
