@@ -34,7 +34,7 @@ fn main() {
     parts(&rectangle, &card);
 }
 
-/// What an iteration of Newton's method in three dimensions is made of.
+/// What an iteration of Newton's method in three dimensions is made of, each the least of ten.
 fn parts(rectangle: &Rectangle, card: &ShellCard) {
     let mut held = vec![[false; 3]; rectangle.mesh.points.len()];
     for end in rectangle.ends() {
@@ -48,18 +48,25 @@ fn parts(rectangle: &Rectangle, card: &ShellCard) {
         q[BLOCK * v..BLOCK * v + 3].copy_from_slice(&[1.2 * x, *y, 1e-4 * (300.0 * y).sin()]);
     }
     for (name, convexity) in [("exact", 0.0), ("convex", 1.0)] {
-        let begin = Instant::now();
-        system.linearise(&q, convexity);
-        println!("{name} second derivatives: {:.1} ms", 1e3 * begin.elapsed().as_secs_f64());
+        println!("{name} second derivatives: {:.1} ms", 1e3 * least(|| _ = system.linearise(&q, convexity)));
     }
-    let begin = Instant::now();
-    let found = system.step(0.0).expect("finite").is_some();
-    println!("factor and solve: {:.1} ms (definite: {found})", 1e3 * begin.elapsed().as_secs_f64());
-    let begin = Instant::now();
-    let energy = system.energy(&q);
-    println!("energy: {:.1} ms ({energy:.3e} J)", 1e3 * begin.elapsed().as_secs_f64());
+    let mut definite = true;
+    let seconds = least(|| definite &= system.step(0.0).expect("finite").is_some());
+    println!("factor and solve: {:.1} ms (definite: {definite})", 1e3 * seconds);
+    println!("energy: {:.1} ms", 1e3 * least(|| assert!(system.energy(&q) > 0.0)));
     match come_to_rest(&mut system, &mut q, &RestSettings::default()) {
         Ok(report) => println!("at rest after {} iterations", report.iterations),
         Err(error) => println!("{error}"),
     }
+}
+
+/// Least time of ten runs \[s\]: what others do on the machine can only add to it.
+fn least(mut run: impl FnMut()) -> f64 {
+    (0..10)
+        .map(|_| {
+            let begin = Instant::now();
+            run();
+            begin.elapsed().as_secs_f64()
+        })
+        .fold(f64::INFINITY, f64::min)
 }

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use wale::fabric::coordinates::BLOCK;
+
 use super::error::{ShellError, positive};
 
 /// A flat mesh of triangles in the specimen's plane.
@@ -46,6 +48,16 @@ impl TriangleMesh {
             edges.push([a, b, left, right]);
         }
         Ok(edges)
+    }
+
+    /// Places of the vertices where the mesh lies flat at height zero, as [`ShellSystem`](super::ShellSystem) takes them \[m\].
+    #[must_use]
+    pub fn laid_flat(&self) -> Vec<f64> {
+        let mut q = vec![0.0; BLOCK * self.points.len()];
+        for (slots, point) in q.chunks_exact_mut(BLOCK).zip(&self.points) {
+            slots[..2].copy_from_slice(point);
+        }
+        q
     }
 
     /// Area of each triangle \[m²\], negative where it is clockwise.

@@ -1,10 +1,11 @@
 //! Thin shells of triangles: the continuum that stands between a measured swatch and a yarn tile [Sperl2022, section 5].
 //!
 //! A [`ShellCard`] says what a fabric is, a [`TriangleMesh`] what was cut of it, and a virtual test ([`ClampedStretch`],
-//! [`PearLoop`], [`Cantilever`], [`uniform`]) what is done with it. [`membrane_fit`] and [`bending_fit`] find the card whose
+//! [`PearLoop`], [`Cantilever`], [`bias_extension`], [`uniform`]) what is done with it. [`membrane_fit`] and [`bending_fit`] find the card whose
 //! tests come out as measured.
 
 pub mod bending_fit;
+pub mod bias_extension;
 pub mod cantilever;
 pub mod card;
 pub mod clamped_stretch;

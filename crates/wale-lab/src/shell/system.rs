@@ -171,7 +171,7 @@ impl ShellSystem {
     /// ones (`convexity = 1`).
     pub fn linearise(&mut self, q: &[f64], convexity: f64) -> f64 {
         self.shift = 0.0;
-        self.matrix.clear();
+        self.matrix.values.fill(0.0);
         self.gradient.iter_mut().zip(&self.weight).for_each(|(g, w)| *g = -w);
         self.element_force = self.weight.iter().fold(0.0f64, |m, w| m.max(w.abs()));
         let mut into = Assembly {
