@@ -7,6 +7,7 @@ pub mod check;
 pub mod coarse_space;
 pub mod conjugate_gradient;
 pub mod dense;
+pub mod eigen;
 pub mod incomplete_cholesky;
 pub mod jet;
 pub mod preconditioner;

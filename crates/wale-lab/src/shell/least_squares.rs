@@ -1,0 +1,241 @@
+//! Nonlinear least squares in the logarithms of positive parameters, from several starts.
+
+use rayon::prelude::*;
+use wale_numerics::dense::SmallSystem;
+use wale_numerics::eigen::symmetric_eigen;
+
+/// Residuals and, for each, its derivatives by the logarithms of the `P` parameters.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residuals<const P: usize> {
+    /// Residuals, scaled so that one is as bad as any other \[–\].
+    pub values: Vec<f64>,
+    /// Their derivatives, a row each.
+    pub slopes: Vec<[f64; P]>,
+}
+
+impl<const P: usize> Residuals<P> {
+    /// Adds a residual with its derivatives.
+    pub fn push(&mut self, value: f64, slopes: [f64; P]) {
+        self.values.push(value);
+        self.slopes.push(slopes);
+    }
+    fn cost(&self) -> f64 {
+        self.values.iter().map(|r| r * r).sum()
+    }
+    /// `JᵀJ`.
+    fn normal(&self) -> [[f64; P]; P] {
+        let mut normal = [[0.0; P]; P];
+        for row in &self.slopes {
+            for i in 0..P {
+                for j in 0..P {
+                    normal[i][j] += row[i] * row[j];
+                }
+            }
+        }
+        normal
+    }
+}
+
+/// How parameters are looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeastSquaresSettings {
+    /// Most evaluations a start.
+    pub max_evaluations: usize,
+    /// Least and largest value of a parameter.
+    pub bounds: [f64; 2],
+    /// Noise of the data that a parameter's interval reckons with even where the fit is closer \[–\].
+    pub least_noise: f64,
+}
+
+/// Parameters that were found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LeastSquaresFit<const P: usize> {
+    /// The parameters.
+    pub parameters: [f64; P],
+    /// Sum of squares.
+    pub cost: f64,
+    /// Singular values of the Jacobian by the logarithms, ascending: how much the residuals change for a change by a factor e.
+    pub singular_values: [f64; P],
+    /// The combinations of logarithms that belong to them.
+    pub combinations: [[f64; P]; P],
+    /// Factor within which each parameter is known with 95 % confidence: it may be that much smaller or larger; infinite where
+    /// the data do not say.
+    pub uncertainty: [f64; P],
+    /// Starts that led to parameters at all.
+    pub starts_that_ended: usize,
+    /// Evaluations of the best start.
+    pub evaluations: usize,
+}
+
+impl<const P: usize> LeastSquaresFit<P> {
+    /// Parameters that the data do not determine within a factor of three, by their index.
+    #[must_use]
+    pub fn undetermined(&self) -> Vec<usize> {
+        (0..P).filter(|&k| self.uncertainty[k] > 3.0).collect()
+    }
+}
+
+/// Largest change of a logarithm in a step.
+const LONGEST_STEP: f64 = 1.5;
+/// Damping at first, and that at which nothing is gained by more.
+const FIRST_DAMPING: f64 = 1e-2;
+const LARGEST_DAMPING: f64 = 1e10;
+/// Relative gain below which the fit is at its end.
+const LEAST_GAIN: f64 = 1e-9;
+
+/// The parameters of least squares by Levenberg–Marquardt from each start; the best of all, the earlier where two are equal.
+///
+/// `evaluate` gets parameters, and answers `None` where a test of them fails: that start then goes another way, or is left out.
+/// Starts run in parallel; the result does not depend on the number of threads. `None` if none led anywhere.
+pub fn fit<const P: usize>(
+    evaluate: impl Fn(&[f64; P]) -> Option<Residuals<P>> + Sync,
+    starts: &[[f64; P]],
+    settings: &LeastSquaresSettings,
+) -> Option<LeastSquaresFit<P>> {
+    let found: Vec<Descent<P>> = starts
+        .par_iter()
+        .map(|start| descend(&evaluate, start, settings))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .flatten()
+        .collect();
+    let starts_that_ended = found.len();
+    let best = found.into_iter().reduce(|best, next| if next.cost < best.cost { next } else { best })?;
+    let (squares, combinations) = symmetric_eigen(&best.here.normal());
+    let freedom = best.here.values.len().saturating_sub(P).max(1);
+    let noise = (best.cost / freedom as f64).max(settings.least_noise * settings.least_noise);
+    let mut uncertainty = [0.0; P];
+    for (k, factor) in uncertainty.iter_mut().enumerate() {
+        let variance: f64 = (0..P)
+            .filter(|&m| combinations[m][k].abs() > 1e-9)
+            .map(|m| noise * combinations[m][k] * combinations[m][k] / squares[m].max(0.0))
+            .sum();
+        *factor = (1.96 * variance.sqrt()).exp();
+    }
+    Some(LeastSquaresFit {
+        parameters: best.logs.map(f64::exp),
+        cost: best.cost,
+        singular_values: squares.map(|square| square.max(0.0).sqrt()),
+        combinations,
+        uncertainty,
+        starts_that_ended,
+        evaluations: best.evaluations,
+    })
+}
+
+struct Descent<const P: usize> {
+    logs: [f64; P],
+    here: Residuals<P>,
+    cost: f64,
+    evaluations: usize,
+}
+
+fn descend<const P: usize>(
+    evaluate: &impl Fn(&[f64; P]) -> Option<Residuals<P>>,
+    start: &[f64; P],
+    settings: &LeastSquaresSettings,
+) -> Option<Descent<P>> {
+    let [low, high] = settings.bounds.map(f64::ln);
+    let mut logs = start.map(|p| p.ln().clamp(low, high));
+    let finite = |r: &Residuals<P>| r.cost().is_finite() && r.slopes.iter().flatten().all(|s| s.is_finite());
+    let at = |logs: &[f64; P]| evaluate(&logs.map(f64::exp)).filter(finite);
+    let mut here = at(&logs)?;
+    let mut cost = here.cost();
+    let mut damping = FIRST_DAMPING;
+    let mut evaluations = 1;
+    let mut system = SmallSystem::default();
+    while evaluations < settings.max_evaluations && damping < LARGEST_DAMPING && cost > 0.0 {
+        let normal = here.normal();
+        let slope: [f64; P] =
+            std::array::from_fn(|i| here.values.iter().zip(&here.slopes).map(|(r, row)| r * row[i]).sum());
+        let largest = (0..P).fold(0.0f64, |m, i| m.max(normal[i][i]));
+        system.clear(P);
+        for i in 0..P {
+            // A parameter at a bound that would go on past it is held.
+            let held = (logs[i] <= low && slope[i] > 0.0) || (logs[i] >= high && slope[i] < 0.0);
+            for j in 0..P {
+                system.matrix[P * i + j] = normal[i][j];
+            }
+            system.matrix[P * i + i] +=
+                damping * (normal[i][i] + 1e-6 * largest) + if held { 1e12 * largest } else { 0.0 };
+            system.right_side[i] = -slope[i];
+        }
+        if !system.solve() {
+            damping = (4.0 * damping).max(1e-12);
+            continue;
+        }
+        let longest = system.right_side.iter().fold(0.0f64, |m, d| m.max(d.abs()));
+        let part = (LONGEST_STEP / longest.max(f64::MIN_POSITIVE)).min(1.0);
+        let trial: [f64; P] = std::array::from_fn(|i| (logs[i] + part * system.right_side[i]).clamp(low, high));
+        evaluations += 1;
+        match at(&trial).map(|found| (found.cost(), found)) {
+            Some((lower, found)) if lower < cost => {
+                let gain = (cost - lower) / cost;
+                (logs, here, cost) = (trial, found, lower);
+                damping = (0.2 * damping).max(1e-14);
+                if gain < LEAST_GAIN {
+                    break;
+                }
+            }
+            _ if part * longest < 1e-10 => break,
+            _ => damping *= 5.0,
+        }
+    }
+    Some(Descent { logs, here, cost, evaluations })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: LeastSquaresSettings =
+        LeastSquaresSettings { max_evaluations: 200, bounds: [1e-6, 1e6], least_noise: 0.01 };
+
+    /// `y = a e^{−bt}` with a third parameter that plays no role.
+    fn decay(truth: [f64; 2]) -> impl Fn(&[f64; 3]) -> Option<Residuals<3>> {
+        move |&[a, b, _]| {
+            let mut out = Residuals::default();
+            for k in 0..10 {
+                let t = 0.3 * f64::from(k);
+                let (y, measured) = (a * (-b * t).exp(), truth[0] * (-truth[1] * t).exp());
+                out.push(y - measured, [y, -b * t * y, 0.0]);
+            }
+            Some(out)
+        }
+    }
+
+    #[test]
+    fn parameters_are_found_and_the_idle_one_is_told() {
+        let fit = fit(decay([3.0, 0.7]), &[[1.0, 1.0, 1.0], [0.01, 5.0, 2.0]], &SETTINGS).unwrap();
+        assert!((fit.parameters[0] - 3.0).abs() < 1e-6 && (fit.parameters[1] - 0.7).abs() < 1e-6, "{fit:?}");
+        assert_eq!(fit.undetermined(), [2]);
+        assert!(fit.singular_values[0] < 1e-9 && fit.combinations[0][2].abs() > 0.999);
+        assert!(fit.uncertainty[0] < 1.1 && fit.uncertainty[2].is_infinite());
+    }
+
+    #[test]
+    fn failures_cost_a_start_or_a_step_and_no_more() {
+        let known = decay([3.0, 0.7]);
+        let patchy = |p: &[f64; 3]| if p[0] > 3.2 || p[1] > 2.0 { None } else { known(p) };
+        let fit = fit(patchy, &[[1.0, 5.0, 1.0], [0.5, 0.3, 1.0]], &SETTINGS).unwrap();
+        assert_eq!(fit.starts_that_ended, 1);
+        assert!((fit.parameters[0] - 3.0).abs() < 1e-6, "{fit:?}");
+        assert!(super::fit(|_: &[f64; 3]| None, &[[1.0; 3]], &SETTINGS).is_none());
+    }
+
+    #[test]
+    fn a_parameter_that_wants_to_be_zero_stops_at_its_bound() {
+        // y = a + b with b = −1 in truth: b goes to its bound, a to what is left.
+        let sum = |&[a, b]: &[f64; 2]| {
+            let mut out = Residuals::default();
+            for t in [1.0, 2.0, 3.0] {
+                out.push(a * t + b - (2.0 * t - 1.0), [a * t, b]);
+            }
+            Some(out)
+        };
+        let fit = fit(sum, &[[1.0, 1.0]], &SETTINGS).unwrap();
+        assert!(fit.parameters[1] < 1e-5);
+        // Least squares of a t alone: a = Σ t(2t − 1)/Σ t² = 22/14.
+        assert!((fit.parameters[0] - 22.0 / 14.0).abs() < 1e-5, "{fit:?}");
+    }
+}

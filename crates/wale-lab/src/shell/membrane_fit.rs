@@ -1,0 +1,248 @@
+//! The six in-plane stiffnesses whose stretch tests come out as measured [Sperl2022, Eq. 2].
+
+use rayon::prelude::*;
+use wale::energy::{BendingStiffness, MembraneStiffness};
+
+use super::card::ShellCard;
+use super::clamped_stretch::ClampedStretch;
+use super::error::ShellError;
+use super::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
+use super::stretch_curve::{StretchCurve, StretchPoint};
+use super::uniform::uniform_stretch;
+
+/// How the curves were measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StretchTest {
+    /// In uniform stretch without stress across; forces are a width \[N/m\].
+    Uniform,
+    /// Between clamps; forces are of the swatch \[N\]. The direction is that of each curve.
+    Clamped(ClampedStretch),
+}
+
+/// How a fit is done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MembraneFitSettings {
+    /// Targets along each measured curve.
+    pub targets: usize,
+    /// Starts, at most [`MembraneFitSettings::MOST_STARTS`].
+    pub starts: usize,
+    /// Most evaluations a start.
+    pub max_evaluations: usize,
+    /// Noise of the data that intervals reckon with even where the fit is closer, over the mean measured value \[–\].
+    pub least_noise: f64,
+}
+
+impl MembraneFitSettings {
+    /// Most starts.
+    pub const MOST_STARTS: usize = STARTS.len();
+}
+
+impl Default for MembraneFitSettings {
+    fn default() -> Self {
+        Self { targets: 6, starts: STARTS.len(), max_evaluations: 120, least_noise: 0.01 }
+    }
+}
+
+/// A fabric that was fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MembraneFit {
+    /// The six stiffnesses \[N/m\].
+    pub stiffness: MembraneStiffness,
+    /// Mean error of the force at the targets over their mean measured force \[–\].
+    pub force_error: f64,
+    /// Mean error of the compression at the targets over their mean measured compression \[–\]; zero where none was measured.
+    pub compression_error: f64,
+    /// The targets, curve by curve, and what the fitted fabric does there.
+    pub points: Vec<Vec<[StretchPoint; 2]>>,
+    /// How well each stiffness is known, in the order of [`MembraneStiffness::NAMES`].
+    pub least_squares: LeastSquaresFit<{ MembraneStiffness::COUNT }>,
+}
+
+impl MembraneFit {
+    /// Names of the stiffnesses that the data do not determine within a factor of three.
+    #[must_use]
+    pub fn undetermined(&self) -> Vec<&'static str> {
+        self.least_squares.undetermined().into_iter().map(|k| MembraneStiffness::NAMES[k]).collect()
+    }
+}
+
+/// Starts, as parts of the moduli along weft and warp (`xx`, `yy`), of their geometric mean (`xy`, `n1`, `n2`) and of the
+/// modulus along the bias (`ss`).
+const STARTS: [[f64; MembraneStiffness::COUNT]; 6] = [
+    [0.8, 0.10, 0.8, 0.30, 0.03, 0.03],
+    [0.8, 0.30, 0.8, 0.30, 0.001, 0.10],
+    [0.5, 0.01, 0.5, 0.10, 0.10, 0.001],
+    [1.0, 0.01, 1.0, 0.50, 0.001, 0.01],
+    [0.5, 0.20, 0.5, 0.05, 0.01, 0.30],
+    [0.3, 0.05, 0.3, 0.30, 0.30, 0.10],
+];
+/// Bounds, as parts of the geometric mean of the moduli.
+const BOUNDS: [f64; 2] = [1e-6, 1e3];
+/// Mean compression below which a width was not measured, or did not change.
+const LEAST_COMPRESSION: f64 = 1e-6;
+
+/// What is measured at a target, and its derivatives by the stiffnesses.
+struct Answer {
+    point: StretchPoint,
+    force_slope: [f64; MembraneStiffness::COUNT],
+    compression_slope: [f64; MembraneStiffness::COUNT],
+}
+
+/// Fits the six stiffnesses to measured curves, of whichever directions there are.
+///
+/// Minimises `Σ ((f − f_i)/f̄)² + ((c − c_i)/c̄)²` over targets that lie evenly along each curve, with the mean measured force
+/// `f̄` and compression `c̄` as weights [Sperl2022, Eq. 2], by Levenberg–Marquardt in the logarithms with exact derivatives
+/// through equilibrium. Coordinates that only a missing direction would tell are reported, not guessed: see
+/// [`MembraneFit::undetermined`].
+///
+/// # Errors
+/// [`ShellError::Fit`] if there is nothing measured, or no start can be tested; [`ShellError::Number`] if a curve folds back.
+pub fn fit_membrane(
+    curves: &[StretchCurve],
+    test: &StretchTest,
+    settings: &MembraneFitSettings,
+) -> Result<MembraneFit, ShellError> {
+    let targets: Vec<Vec<StretchPoint>> =
+        curves.iter().map(|curve| curve.targets(settings.targets)).collect::<Result<_, _>>()?;
+    let count = targets.iter().map(Vec::len).sum::<usize>();
+    let mean = |of: fn(&StretchPoint) -> f64| targets.iter().flatten().map(|t| of(t).abs()).sum::<f64>() / count as f64;
+    let (mean_force, mean_compression) = (mean(|t| t.force), mean(|t| t.compression));
+    // Written so that a NaN fails.
+    if !(mean_force > 0.0 && mean_force < f64::INFINITY && mean_compression.is_finite()) {
+        return Err(ShellError::Fit("no force was measured".into()));
+    }
+    let weigh_compression = if mean_compression > LEAST_COMPRESSION { 1.0 / mean_compression } else { 0.0 };
+
+    let answers = |parameters: &[f64; MembraneStiffness::COUNT]| -> Option<Vec<Vec<Answer>>> {
+        let stiffness = MembraneStiffness::from_array(*parameters);
+        (0..curves.len()).into_par_iter().map(|k| answer(test, &stiffness, curves[k].angle, &targets[k])).collect()
+    };
+    let evaluate = |parameters: &[f64; MembraneStiffness::COUNT]| {
+        let mut out = Residuals::default();
+        for (target, answer) in targets.iter().flatten().zip(answers(parameters)?.iter().flatten()) {
+            let by_log = |slope: &[f64; 6], weight: f64| std::array::from_fn(|k| weight * slope[k] * parameters[k]);
+            let force = (answer.point.force - target.force) / mean_force;
+            out.push(force, by_log(&answer.force_slope, 1.0 / mean_force));
+            if weigh_compression > 0.0 {
+                let compression = (answer.point.compression - target.compression) * weigh_compression;
+                out.push(compression, by_log(&answer.compression_slope, weigh_compression));
+            }
+        }
+        Some(out)
+    };
+
+    let width = if let StretchTest::Clamped(test) = test { test.width } else { 1.0 };
+    let (starts, unit) = starts(curves, &targets, width, settings.starts);
+    let bounds = BOUNDS.map(|part| part * unit);
+    let search =
+        LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
+    let failed = || ShellError::Fit("no start led to a fabric whose tests could be done".into());
+    let least_squares = fit(evaluate, &starts, &search).ok_or_else(failed)?;
+    let found = answers(&least_squares.parameters).ok_or_else(failed)?;
+    let points: Vec<Vec<[StretchPoint; 2]>> = targets
+        .iter()
+        .zip(&found)
+        .map(|(targets, answers)| targets.iter().zip(answers).map(|(target, answer)| [*target, answer.point]).collect())
+        .collect();
+    let error = |of: fn(&StretchPoint) -> f64, mean: f64| {
+        points.iter().flatten().map(|[target, found]| (of(found) - of(target)).abs()).sum::<f64>() / count as f64 * mean
+    };
+    Ok(MembraneFit {
+        stiffness: MembraneStiffness::from_array(least_squares.parameters),
+        force_error: error(|p| p.force, 1.0 / mean_force),
+        compression_error: error(|p| p.compression, weigh_compression),
+        points,
+        least_squares,
+    })
+}
+
+/// The targets of one direction; `None` where the fabric cannot be tested.
+fn answer(
+    test: &StretchTest,
+    stiffness: &MembraneStiffness,
+    angle: f64,
+    targets: &[StretchPoint],
+) -> Option<Vec<Answer>> {
+    let card = ShellCard { membrane: *stiffness, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 };
+    card.check().ok()?;
+    match test {
+        StretchTest::Uniform => targets
+            .iter()
+            .map(|target| {
+                let found = uniform_stretch(stiffness, angle, target.stretch).ok()?;
+                let super::uniform::UniformPoint { point, force_slope, compression_slope } = found;
+                Some(Answer { point, force_slope, compression_slope })
+            })
+            .collect(),
+        StretchTest::Clamped(test) => {
+            let stretches: Vec<f64> = targets.iter().map(|target| target.stretch).collect();
+            let found = ClampedStretch { angle, ..*test }.run_with_slopes(&card, &stretches).ok()?;
+            let answer = |found: super::clamped_stretch::SensitivePoint| Answer {
+                point: found.point,
+                force_slope: found.force_slope,
+                compression_slope: found.compression_slope,
+            };
+            Some(found.into_iter().map(answer).collect())
+        }
+    }
+}
+
+/// Where to begin, from the moduli of the measured curves; and the geometric mean of the moduli \[N/m\].
+fn starts(
+    curves: &[StretchCurve],
+    targets: &[Vec<StretchPoint>],
+    width: f64,
+    count: usize,
+) -> (Vec<[f64; MembraneStiffness::COUNT]>, f64) {
+    // The curve nearest to a direction stands in for one that is missing.
+    let modulus = |angle: f64| {
+        let away = |k: &usize| (curves[*k].angle - angle).abs();
+        let nearest = (0..curves.len()).filter(|&k| !targets[k].is_empty()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let points = nearest.map_or(&[][..], |k| &targets[k][..]);
+        let sum = |of: fn(&StretchPoint) -> f64| points.iter().map(of).sum::<f64>();
+        (sum(|p| p.force) / (width * sum(|p| p.stretch))).abs().clamp(1e-6, 1e9)
+    };
+    let right = std::f64::consts::FRAC_PI_2;
+    let (weft, bias, warp) = (modulus(0.0), modulus(0.5 * right), modulus(right));
+    let mean = (weft * warp).sqrt();
+    let units = [weft, mean, warp, bias, mean, mean];
+    let starts = STARTS.iter().take(count.max(1)).map(|parts| std::array::from_fn(|k| parts[k] * units[k])).collect();
+    (starts, mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::uniform::uniform_curve;
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    const TRUTH: MembraneStiffness = MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0 };
+
+    #[test]
+    fn uniform_curves_of_a_known_fabric_are_recovered() {
+        let curves: Vec<_> = [(0.0, 1.2), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)]
+            .map(|(angle, largest)| uniform_curve(&TRUTH, angle, largest, 60).unwrap())
+            .into();
+        let fit = fit_membrane(&curves, &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap();
+        assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
+        assert!((fit.stiffness.yy / TRUTH.yy - 1.0).abs() < 0.05, "{:?}", fit.stiffness);
+    }
+
+    #[test]
+    fn what_a_missing_direction_would_tell_is_reported() {
+        let weft = uniform_curve(&TRUTH, 0.0, 0.8, 60).unwrap();
+        let fit = fit_membrane(&[weft], &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap();
+        assert!(fit.force_error < 0.01);
+        let missing = fit.undetermined();
+        assert!(missing.contains(&"k_ss") && !missing.contains(&"k_xx"), "{missing:?}");
+    }
+
+    #[test]
+    fn nothing_measured_is_an_error() {
+        let empty = StretchCurve { angle: 0.0, points: Vec::new() };
+        for curves in [&[][..], &[empty][..]] {
+            let error = fit_membrane(curves, &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap_err();
+            assert!(error.to_string().contains("no force"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,394 @@
+//! In-plane deformation of a thin shell: a triangle that resists stretch, shear and change of area.
+
+use wale_numerics::check::Local;
+use wale_numerics::eigen::positive_part;
+use wale_numerics::jet::Real;
+use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
+
+use super::element::{Element, point};
+
+/// The six in-plane stiffnesses of a fabric, `x` along its weft and `y` along its warp \[N/m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MembraneStiffness {
+    /// `k_xx`: stretch along the weft.
+    pub xx: f64,
+    /// `k_xy`: coupling of the two stretches.
+    pub xy: f64,
+    /// `k_yy`: stretch along the warp.
+    pub yy: f64,
+    /// `k_ss`: shear.
+    pub ss: f64,
+    /// `k_n1`: change of area, quadratic.
+    pub n1: f64,
+    /// `k_n2`: change of area, logarithmic; keeps triangles from collapsing.
+    pub n2: f64,
+}
+
+impl MembraneStiffness {
+    /// Number of stiffnesses.
+    pub const COUNT: usize = 6;
+    /// Their names, in the order of [`Self::to_array`].
+    pub const NAMES: [&'static str; Self::COUNT] = ["k_xx", "k_xy", "k_yy", "k_ss", "k_n1", "k_n2"];
+
+    /// The six numbers \[N/m\].
+    #[must_use]
+    pub fn to_array(self) -> [f64; Self::COUNT] {
+        [self.xx, self.xy, self.yy, self.ss, self.n1, self.n2]
+    }
+    /// From the six numbers \[N/m\].
+    #[must_use]
+    pub fn from_array([xx, xy, yy, ss, n1, n2]: [f64; Self::COUNT]) -> Self {
+        Self { xx, xy, yy, ss, n1, n2 }
+    }
+    /// One of the six is 1 N/m, the others zero: the energy is linear in them, so this is its derivative by that one.
+    #[must_use]
+    pub fn unit(index: usize) -> Self {
+        let mut array = [0.0; Self::COUNT];
+        array[index] = 1.0;
+        Self::from_array(array)
+    }
+
+    /// Energy density \[J/m²\] of a deformation with the metric `[f₁·f₁, f₂·f₂, f₁·f₂]` and the area ratio `J`.
+    pub fn density<T: Real>(&self, [a, b, c]: [T; 3], area_ratio: T) -> T {
+        let (e1, e2) = (a.offset(-1.0).scale(0.5), b.offset(-1.0).scale(0.5));
+        let quadratic = e1.square().scale(self.xx)
+            + (e1 * e2).scale(2.0 * self.xy)
+            + e2.square().scale(self.yy)
+            + c.square().scale(self.ss);
+        let area = area_ratio.offset(-1.0).square().scale(self.n1);
+        // Without the logarithm a collapsed triangle has a finite energy; 0 · ∞ would be no number.
+        let log = if self.n2 == 0.0 { T::constant(0.0) } else { area_ratio.ln().square().scale(self.n2) };
+        quadratic.scale(0.5) + area + log
+    }
+}
+
+/// A triangle of fabric: anisotropic St. Venant–Kirchhoff with Neo-Hookean terms that preserve its area.
+///
+/// `V = A [½ εᵀ K ε + k_n1 (J − 1)² + k_n2 log² J]`, `ε = (E₁₁, E₂₂, 2E₁₂)`, `E = ½(FᵀF − I)`      [Sperl2022, Eq. 1]
+///
+/// `F = (f₁ f₂)` takes directions of the fabric's plane to space, so `J = |f₁ × f₂|`. Local coordinates: the three vertices
+/// `x₀ x₁ x₂` \[m\]. Undefined where the triangle has no area; its energy grows beyond all bounds on the way there. In space
+/// a triangle that is turned over has a positive area again, so a solver must not step across `J = 0`:
+/// [`Membrane::longest_step`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Membrane {
+    /// Stiffnesses \[N/m\].
+    pub stiffness: MembraneStiffness,
+    /// Inverse of the matrix whose columns are the edges `X₁ − X₀`, `X₂ − X₀` in the fabric's coordinates \[1/m\].
+    pub inverse: [[f64; 2]; 2],
+    /// Area at rest \[m²\].
+    pub area: f64,
+}
+
+/// First and second derivatives of the density by the metric `a = f₁·f₁`, `b = f₂·f₂`, `c = f₁·f₂`.
+struct ByMetric {
+    first: [f64; 3],
+    second: [[f64; 3]; 3],
+}
+
+impl Membrane {
+    /// The triangle whose vertices lie at rest at `rest`, in the fabric's coordinates (weft, warp) \[m\]; `None` if it has no
+    /// area there, or vertices in clockwise order.
+    #[must_use]
+    pub fn new(stiffness: MembraneStiffness, rest: [[f64; 2]; 3]) -> Option<Self> {
+        let edge = |k: usize| [rest[k][0] - rest[0][0], rest[k][1] - rest[0][1]];
+        let (p, q) = (edge(1), edge(2));
+        let double = p[0] * q[1] - p[1] * q[0];
+        // Written so that a NaN fails.
+        if !(double > 0.0 && double < f64::INFINITY) {
+            return None;
+        }
+        let inverse = [[q[1] / double, -q[0] / double], [-p[1] / double, p[0] / double]];
+        Some(Self { stiffness, inverse, area: 0.5 * double })
+    }
+
+    /// The columns `f₁`, `f₂` of the deformation gradient.
+    #[must_use]
+    pub fn deformation<T: Real>(&self, q: &[T; 9]) -> [[T; 3]; 2] {
+        let (p, r) = (sub(point(q, 3), point(q, 0)), sub(point(q, 6), point(q, 0)));
+        let column =
+            |k: usize| add(scale(p, T::constant(self.inverse[0][k])), scale(r, T::constant(self.inverse[1][k])));
+        [column(0), column(1)]
+    }
+
+    /// Area over area at rest, `J` \[–\].
+    #[must_use]
+    pub fn area_ratio(&self, q: &[f64; 9]) -> f64 {
+        let [f1, f2] = self.deformation(q);
+        let n = cross(f1, f2);
+        dot(n, n).sqrt()
+    }
+
+    /// The largest part `t` of a step, at most one, within which the triangle's normal does not turn away by a right angle
+    /// or more; then neither does its area vanish, nor is it turned over.
+    #[must_use]
+    pub fn longest_step(q: &[f64; 9], direction: &[f64; 9]) -> f64 {
+        // n(t)·n(0) for the normal n(t) = (p + t dp) × (r + t dr): a parabola that is positive at zero.
+        let edge = |of: &[f64; 9], k: usize| sub(point(of, k), point(of, 0));
+        let (p, r, dp, dr) = (edge(q, 3), edge(q, 6), edge(direction, 3), edge(direction, 6));
+        let n = cross(p, r);
+        let (c, b, a) = (dot(n, n), dot(n, add(cross(dp, r), cross(p, dr))), dot(n, cross(dp, dr)));
+        let discriminant = b * b - 4.0 * a * c;
+        if discriminant < 0.0 {
+            return 1.0;
+        }
+        // The smaller positive root, by the form that does not cancel: 2c / (−b + √…) where b < 0, and for b ≥ 0 only a < 0
+        // has a positive root.
+        let below = -b + discriminant.sqrt();
+        if below > 0.0 && (b < 0.0 || a < 0.0) { (2.0 * c / below).min(1.0) } else { 1.0 }
+    }
+
+    fn metric(f: &[[f64; 3]; 2]) -> [f64; 3] {
+        [dot(f[0], f[0]), dot(f[1], f[1]), dot(f[0], f[1])]
+    }
+
+    /// `φ′` and `φ″` by `d = J²` of `φ = k_n1 (J − 1)² + k_n2 log² J`.
+    fn by_determinant(&self, area_ratio: f64) -> [f64; 2] {
+        let (j, k) = (area_ratio, &self.stiffness);
+        let log = if k.n2 == 0.0 { 0.0 } else { j.ln() };
+        let first = 2.0 * k.n1 * (j - 1.0) + 2.0 * k.n2 * log / j;
+        let second = 2.0 * k.n1 + 2.0 * k.n2 * (1.0 - log) / (j * j);
+        [0.5 * first / j, 0.25 * (second - first / j) / (j * j)]
+    }
+
+    fn by_metric(&self, [a, b, c]: [f64; 3], area_ratio: f64) -> ByMetric {
+        let k = &self.stiffness;
+        let (e1, e2) = (0.5 * (a - 1.0), 0.5 * (b - 1.0));
+        let [d1, d2] = self.by_determinant(area_ratio);
+        // d = ab − c².
+        let g = [b, a, -2.0 * c];
+        let first = [
+            0.5 * (k.xx * e1 + k.xy * e2) + d1 * g[0],
+            0.5 * (k.xy * e1 + k.yy * e2) + d1 * g[1],
+            k.ss * c + d1 * g[2],
+        ];
+        let mut second =
+            [[0.25 * k.xx, 0.25 * k.xy + d1, 0.0], [0.25 * k.xy + d1, 0.25 * k.yy, 0.0], [0.0, 0.0, k.ss - 2.0 * d1]];
+        for i in 0..3 {
+            for j in 0..3 {
+                second[i][j] += d2 * g[i] * g[j];
+            }
+        }
+        ByMetric { first, second }
+    }
+
+    /// How `f₁` and `f₂` move with each vertex \[1/m\].
+    fn weights(&self) -> [[f64; 2]; 3] {
+        let m = &self.inverse;
+        [[-m[0][0] - m[1][0], -m[0][1] - m[1][1]], m[0], m[1]]
+    }
+
+    fn spread(&self, f: &[[f64; 3]; 2], [a, b, c]: [f64; 3]) -> [f64; 9] {
+        // ∂ψ/∂f₁ = 2ψ_a f₁ + ψ_c f₂ and the other way round: the first Piola–Kirchhoff stress.
+        let stress: [[f64; 3]; 2] = [
+            std::array::from_fn(|i| 2.0 * a * f[0][i] + c * f[1][i]),
+            std::array::from_fn(|i| 2.0 * b * f[1][i] + c * f[0][i]),
+        ];
+        let w = self.weights();
+        std::array::from_fn(|k| {
+            let (vertex, i) = (k / 3, k % 3);
+            self.area * (w[vertex][0] * stress[0][i] + w[vertex][1] * stress[1][i])
+        })
+    }
+}
+
+impl Element<9> for Membrane {
+    const NAME: &'static str = "membrane";
+
+    fn energy<T: Real>(&self, q: &[T; 9]) -> T {
+        let [f1, f2] = self.deformation(q);
+        let n = cross(f1, f2);
+        let metric = [dot(f1, f1), dot(f2, f2), dot(f1, f2)];
+        self.stiffness.density(metric, dot(n, n).sqrt()).scale(self.area)
+    }
+
+    fn convex(&self, q: &[f64; 9]) -> Local<9> {
+        let mut local = Local::zero();
+        self.add_blended(q, 1.0, &mut local);
+        local
+    }
+
+    fn add_blended(&self, q: &[f64; 9], convexity: f64, sum: &mut Local<9>) {
+        let f = self.deformation(q);
+        let n = cross(f[0], f[1]);
+        let (metric, area_ratio) = (Self::metric(&f), dot(n, n).sqrt());
+        let ByMetric { first, second } = self.by_metric(metric, area_ratio);
+        sum.add_gradient((self.area * self.stiffness.density(metric, area_ratio), self.spread(&f, first)));
+
+        // H = S ⊗ I + Gᵀ ψ″ G with the second Piola–Kirchhoff stress S: both are clamped for the convex one.
+        let mut stress = [[2.0 * first[0], first[2]], [first[2], 2.0 * first[1]]];
+        let mut second = second;
+        if convexity > 0.0 {
+            blend(&mut stress, convexity);
+            blend(&mut second, convexity);
+        }
+        let w = self.weights();
+        // Rows of G by vertex and axis: how a, b and c change.
+        let slopes: [[f64; 9]; 3] = [
+            std::array::from_fn(|k| 2.0 * w[k / 3][0] * f[0][k % 3]),
+            std::array::from_fn(|k| 2.0 * w[k / 3][1] * f[1][k % 3]),
+            std::array::from_fn(|k| w[k / 3][0] * f[1][k % 3] + w[k / 3][1] * f[0][k % 3]),
+        ];
+        let second = second.map(|row| row.map(|value| self.area * value));
+        let bent: [[f64; 9]; 3] = std::array::from_fn(|i| {
+            std::array::from_fn(|k| {
+                second[i][0] * slopes[0][k] + second[i][1] * slopes[1][k] + second[i][2] * slopes[2][k]
+            })
+        });
+        for i in 0..9 {
+            for j in 0..9 {
+                sum.hessian[i][j] += slopes[0][i] * bent[0][j] + slopes[1][i] * bent[1][j] + slopes[2][i] * bent[2][j];
+            }
+        }
+        for v in 0..3 {
+            for u in 0..3 {
+                let along = |k: usize| stress[k][0] * w[u][0] + stress[k][1] * w[u][1];
+                let value = self.area * (w[v][0] * along(0) + w[v][1] * along(1));
+                for i in 0..3 {
+                    sum.hessian[3 * v + i][3 * u + i] += value;
+                }
+            }
+        }
+    }
+
+    fn gradient(&self, q: &[f64; 9]) -> (f64, [f64; 9]) {
+        let f = self.deformation(q);
+        let n = cross(f[0], f[1]);
+        let (metric, area_ratio) = (Self::metric(&f), dot(n, n).sqrt());
+        let first = self.by_metric(metric, area_ratio).first;
+        (self.area * self.stiffness.density(metric, area_ratio), self.spread(&f, first))
+    }
+}
+
+/// From the exact matrix towards its positive part.
+fn blend<const N: usize>(matrix: &mut [[f64; N]; N], convexity: f64) {
+    let positive = positive_part(matrix);
+    for (row, other) in matrix.iter_mut().zip(&positive) {
+        for (value, other) in row.iter_mut().zip(other) {
+            *value += convexity * (other - *value);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::element::testing::{Random, check, check_blend};
+    use super::*;
+
+    const STIFFNESS: MembraneStiffness = MembraneStiffness { xx: 40.0, xy: 9.0, yy: 110.0, ss: 6.0, n1: 3.0, n2: 5.0 };
+
+    fn triangle(random: &mut Random, stiffness: MembraneStiffness) -> (Membrane, [f64; 9]) {
+        let mut rest = [[0.0, 0.0], [1.0, 0.1], [0.3, 0.9]];
+        rest.iter_mut().flatten().for_each(|x| *x += 0.15 * random.next());
+        let element = Membrane::new(stiffness, rest).expect("a triangle with an area");
+        let mut q = [0.0; 9];
+        for (k, x) in q.iter_mut().enumerate() {
+            *x = (if k % 3 < 2 { 1.3 * rest[k / 3][k % 3] } else { 0.0 }) + 0.3 * random.next();
+        }
+        (element, q)
+    }
+
+    #[test]
+    fn derivatives() {
+        let mut random = Random::new(5);
+        for _ in 0..50 {
+            let (element, q) = triangle(&mut random, STIFFNESS);
+            check(&element, &q, 0.1);
+            check_blend(&element, &q, 1e-10);
+        }
+    }
+
+    #[test]
+    fn derivatives_by_each_stiffness_alone() {
+        let mut random = Random::new(6);
+        for index in 0..MembraneStiffness::COUNT {
+            for _ in 0..10 {
+                let (element, q) = triangle(&mut random, MembraneStiffness::unit(index));
+                check(&element, &q, 0.1);
+                check_blend(&element, &q, 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn derivatives_of_a_crushed_triangle() {
+        let mut random = Random::new(7);
+        for squeeze in [0.5, 0.2, 0.05] {
+            let (element, mut q) = triangle(&mut random, STIFFNESS);
+            q.iter_mut().step_by(3).for_each(|x| *x *= squeeze);
+            check(&element, &q, 0.1 * squeeze);
+            check_blend(&element, &q, 1e-10);
+        }
+    }
+
+    #[test]
+    fn rigid_motions_cost_nothing() {
+        let (element, q) = triangle(&mut Random::new(8), STIFFNESS);
+        let (s, c) = 0.7f64.sin_cos();
+        let mut turned = q;
+        for v in 0..3 {
+            let [x, y, z] = point(&q, 3 * v);
+            let (x, y) = (c * x - s * y, s * x + c * y);
+            let (y, z) = (c * y - s * z, s * y + c * z);
+            turned[3 * v..3 * v + 3].copy_from_slice(&[x + 0.3, y - 2.0, z + 1.0]);
+        }
+        let (before, after) = (element.energy(&q), element.energy(&turned));
+        assert!((before - after).abs() < 1e-13 * before, "{before} {after}");
+        let rest = [[0.1, 0.0], [1.0, 0.2], [0.2, 1.1]];
+        let element = Membrane::new(STIFFNESS, rest).unwrap();
+        let at_rest = std::array::from_fn(|k| if k % 3 < 2 { rest[k / 3][k % 3] } else { 4.0 });
+        let (energy, gradient) = element.gradient(&at_rest);
+        assert!(energy.abs() < 1e-28 && gradient.iter().all(|g| g.abs() < 1e-13));
+    }
+
+    #[test]
+    fn small_strains_have_the_plane_stress_modulus_and_poisson_ratio() {
+        // E_x = C_xx − C_xy²/C_yy and ν = C_xy/C_yy with C_ij = k_ij + 2(k_n1 + k_n2).
+        let area = 2.0 * (STIFFNESS.n1 + STIFFNESS.n2);
+        let [cxx, cxy, cyy] = [STIFFNESS.xx, STIFFNESS.xy, STIFFNESS.yy].map(|k| k + area);
+        let element = Membrane::new(STIFFNESS, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
+        let strain = 1e-6;
+        let nu = cxy / cyy;
+        let q = [0.0, 0.0, 0.0, 1.0 + strain, 0.0, 0.0, 0.0, 1.0 - nu * strain, 0.0];
+        let gradient = element.gradient(&q).1;
+        // Forces at the two free vertices are the stress times half the unit square.
+        let (along, across) = (2.0 * gradient[3] / strain, 2.0 * gradient[7] / strain);
+        assert!((along / (cxx - cxy * cxy / cyy) - 1.0).abs() < 1e-5, "{along}");
+        assert!(across.abs() < 1e-4 * along, "{across}");
+    }
+
+    #[test]
+    fn a_step_stops_before_the_triangle_is_turned_over() {
+        let q = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let mut down = [0.0; 9];
+        down[7] = -4.0; // the apex goes through the base at a quarter of the step
+        assert!((Membrane::longest_step(&q, &down) - 0.25).abs() < 1e-15);
+        down[7] = 4.0;
+        assert_eq!(Membrane::longest_step(&q, &down), 1.0);
+        down[7] = -0.5;
+        assert_eq!(Membrane::longest_step(&q, &down), 1.0);
+        // Both edges shrink to nothing and come out turned about: a double root at one half.
+        let shrink = q.map(|x| -2.0 * x);
+        assert!((Membrane::longest_step(&q, &shrink) - 0.5).abs() < 1e-7);
+        // Against a search, at random.
+        let mut random = Random::new(9);
+        for _ in 0..200 {
+            let (q, d): ([f64; 9], [f64; 9]) =
+                (std::array::from_fn(|_| random.next()), std::array::from_fn(|_| 3.0 * random.next()));
+            let normal = |t: f64| {
+                let at: [f64; 9] = std::array::from_fn(|k| q[k] + t * d[k]);
+                cross(sub(point(&at, 3), point(&at, 0)), sub(point(&at, 6), point(&at, 0)))
+            };
+            let found = (0..=4000).map(|k| f64::from(k) / 4000.0).find(|&t| dot(normal(t), normal(0.0)) <= 0.0);
+            let part = Membrane::longest_step(&q, &d);
+            assert!((part - found.unwrap_or(1.0)).abs() <= 1.0 / 4000.0, "{part} {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_triangle_without_area_is_none() {
+        assert!(Membrane::new(STIFFNESS, [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]).is_none());
+        assert!(Membrane::new(STIFFNESS, [[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]).is_none());
+        assert!(Membrane::new(STIFFNESS, [[0.0, 0.0], [f64::NAN, 0.0], [0.0, 1.0]]).is_none());
+    }
+}
