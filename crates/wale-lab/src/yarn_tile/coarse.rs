@@ -7,7 +7,8 @@
 /// cylinder: `x_d = (1/κ − h) sin κt`, `x_n = 1/κ − (1/κ − h) cos κt`, with `t` along the direction and `h` the height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoarseDeformation {
-    /// Deformation gradient `F` of the plane by rows \[–\].
+    /// Deformation gradient `F` of the plane by rows \[–\]; without rotation, since what keeps yarns from sliding is measured in the
+    /// directions of the tile.
     pub plane: [[f64; 2]; 2],
     /// Unit vector along which `s` and `κ` are measured.
     pub direction: [f64; 2],

@@ -95,6 +95,9 @@ const LEAST_CONVEXITY: f64 = 0.02;
 const SOME_CONVEXITY: f64 = 0.125;
 /// Longest move of a vertex in a step, in reaches of contact: less than lies between the search for contacts and its margin.
 const LONGEST_MOVE: f64 = 0.12;
+/// How often, and to which part, a step is shortened before another is asked for.
+const MOST_SHORTENED: u32 = 2;
+const SHORTENED: f64 = 0.3;
 /// Parts that a change of deformation is cut into at most, as powers of two.
 const MOST_HALVINGS: u32 = 12;
 
@@ -299,30 +302,48 @@ impl TileSolver {
             let square = dot(&direction, &direction) + weight * by_compression * by_compression;
             let curvature = -slope - used * square;
             let most = LONGEST_MOVE * 2.0 * self.length;
-            let part = self.system.longest_step(&self.displacement, &direction, by_compression, most);
+            let mut part = self.system.longest_step(&self.displacement, &direction, by_compression, most);
             let (before, energy) = ((self.system.deformation, self.displacement.clone()), self.energy);
-            self.displacement.iter_mut().zip(&direction).for_each(|(u, d)| *u += part * d);
             let rate = self.system.deformation.compression_rate();
-            self.system.deformation.add(&rate, part * by_compression);
-            self.system.refresh_contacts(&self.displacement)?;
-            let gained = energy - self.system.energy(&self.displacement);
-            let predicted = -part * slope - 0.5 * part * part * curvature;
-            // Close to rest the energy no longer resolves the step: trust Newton there.
-            let resolved = predicted > 1e-11 * energy.abs();
-            let trust = if resolved { gained / predicted } else { 1.0 };
-            if trust > 0.75 && part > 0.9 {
-                self.shift *= 0.2;
-                self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
-            } else if trust.is_nan() || trust < 0.25 {
-                self.shift = (4.0 * self.shift).max(LEAST_SHIFT);
-            }
-            if trust > 1e-3 {
-                return Ok(true);
+            let mut searched = false;
+            for attempt in 0..=MOST_SHORTENED {
+                self.displacement.iter_mut().zip(&before.1).zip(&direction).for_each(|((u, b), d)| *u = b + part * d);
+                self.system.deformation = before.0;
+                self.system.deformation.add(&rate, part * by_compression);
+                searched |= self.system.refresh_contacts(&self.displacement)?;
+                let gained = energy - self.system.energy(&self.displacement);
+                let predicted = -part * slope - 0.5 * part * part * curvature;
+                // Close to rest the energy no longer resolves the step: trust Newton there.
+                let resolved = predicted > 1e-11 * energy.abs();
+                let trust = if resolved { gained / predicted } else { 1.0 };
+                if attempt == 0 {
+                    self.judge(trust, part);
+                }
+                if trust > 1e-3 {
+                    return Ok(true);
+                }
+                // Along a curved valley a shorter step is cheaper than another factor.
+                part *= SHORTENED;
             }
             (self.system.deformation, self.displacement) = before;
+            if searched {
+                self.linearise()?;
+            }
         }
         self.shift = FIRST_SHIFT;
         Ok(false)
+    }
+}
+
+impl TileSolver {
+    /// Learns from how much of the predicted energy a step has gained.
+    fn judge(&mut self, trust: f64, part: f64) {
+        if trust > 0.75 && part > 0.9 {
+            self.shift *= 0.2;
+            self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
+        } else if trust.is_nan() || trust < 0.25 {
+            self.shift = (4.0 * self.shift).max(LEAST_SHIFT);
+        }
     }
 }
 

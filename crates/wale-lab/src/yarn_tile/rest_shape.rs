@@ -27,7 +27,7 @@ impl Default for RestShapeSettings {
         Self {
             early_rounds: 8,
             early_iterations: 4,
-            late_rounds: 12,
+            late_rounds: 30,
             most_change: 0.2,
             equilibrium: EquilibriumSettings::default(),
         }

@@ -104,11 +104,11 @@ impl TileSystem {
         [x + u[0], y + u[1], z + u[2]]
     }
 
-    /// Searches for contacts anew if anything has moved too far since.
+    /// Searches for contacts anew if anything has moved too far since; whether it did, and the second derivatives are lost.
     ///
     /// # Errors
     /// If the system is too large.
-    pub fn refresh_contacts(&mut self, displacement: &[f64]) -> Result<(), CholeskyError> {
+    pub fn refresh_contacts(&mut self, displacement: &[f64]) -> Result<bool, CholeskyError> {
         let reach = self.material.reach();
         let flat = self.flat(displacement);
         if let Some((deformation, before)) = &self.searched {
@@ -126,7 +126,7 @@ impl TileSystem {
                 .sum();
             let bent = self.deformation.curvature == deformation.curvature;
             if bent && 2.0 * moved + lattice <= MARGIN * reach {
-                return Ok(());
+                return Ok(false);
             }
         }
         // On a cylinder, what lies above its middle comes nearer.
@@ -162,7 +162,7 @@ impl TileSystem {
             self.second = Self::matrix(pattern, &self.constraints, self.free_compression)?;
         }
         self.searched = Some((self.deformation, flat));
-        Ok(())
+        Ok(true)
     }
 
     /// Energy of the tile \[J\].

@@ -44,14 +44,13 @@ pub fn basket() -> YarnTile {
     of_rows([period, period], radius, &rows)
 }
 
-/// One loop of stockinette, a curve in closed form that interlocks with its images.
+/// One loop of stockinette, a curve in closed form that interlocks with its images and just touches them.
 pub fn stockinette() -> YarnTile {
-    let (wale, course, radius, n) = (0.0075, 0.0052, 0.00075, 32);
+    let (wale, course, radius, n) = (0.0075, 0.006, 0.0009, 40);
     let point = |k: u32| {
         let t = TAU * (f64::from(k) + 0.3) / f64::from(n);
-        let x = wale * t / TAU + 0.34 * wale * (2.0 * t).sin();
-        let y = -0.78 * course * t.cos();
-        [x, y, 1.05 * radius * (2.0 * t).cos()]
+        let x = wale * (t / TAU + 0.225 * (2.0 * t).sin());
+        [x, -0.9 * course * t.cos(), 0.16 * wale * (2.0 * t).cos()]
     };
     of_rows([wale, course], radius, &[((0..n).map(point).collect(), [1, 0])])
 }
