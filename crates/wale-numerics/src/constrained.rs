@@ -107,13 +107,13 @@ impl ConstrainedSystem {
         }
         let (m, p, b) = (self.constraints.len(), self.pins.len(), self.border.len());
         let size = m + p + b;
-        for k in 0..size {
-            let mut column = std::mem::take(&mut self.columns[k]);
+        let mut columns = std::mem::take(&mut self.columns);
+        for (k, column) in columns.iter_mut().enumerate() {
             column.fill(0.0);
-            self.add_outer(k, 1.0, &mut column);
-            self.cholesky.solve_in_place(&mut column);
-            self.columns[k] = column;
+            self.add_outer(k, 1.0, column);
         }
+        self.cholesky.solve_columns_in_place(&mut columns);
+        self.columns = columns;
         for i in 0..size {
             for j in 0..size {
                 self.gram[i * size + j] = self.outer_dot(i, &self.columns[j]);

@@ -15,13 +15,13 @@ use super::tile::YarnTile;
 pub struct EquilibriumSettings {
     /// Net force on a vertex at which it is at rest, in `k_b/R² + 10⁻³ k_s1` \[–\].
     pub tolerance: f64,
-    /// Most Newton iterations.
+    /// Most Newton iterations, as linear systems factored.
     pub max_iterations: usize,
 }
 
 impl Default for EquilibriumSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-8, max_iterations: 300 }
+        Self { tolerance: 1e-8, max_iterations: 600 }
     }
 }
 
@@ -58,7 +58,7 @@ pub struct TileEquilibrium {
     pub energy_density: f64,
     /// Homogenised stress \[N/m\].
     pub stress: CoarseStress,
-    /// Newton iterations used.
+    /// Newton iterations used: linear systems factored, those of steps that were not taken too.
     pub iterations: usize,
     /// Largest net force left, in the unit of [`EquilibriumSettings::tolerance`].
     pub residual: f64,
@@ -83,11 +83,13 @@ pub struct TileSolver {
     convexity: f64,
     energy: f64,
     residual: f64,
+    /// Linear systems factored since the last deformation.
+    iterations: usize,
 }
 
 /// First multiple of the identity, in units of force over length, and the least that is not none.
 const FIRST_SHIFT: f64 = 1.0;
-const LEAST_SHIFT: f64 = 1e-5;
+const LEAST_SHIFT: f64 = 1e-9;
 /// Largest: a step so short that nothing is gained by another.
 const LARGEST_SHIFT: f64 = 1e12;
 /// Least convexity that is not none, and the first after none.
@@ -146,6 +148,7 @@ impl TileSolver {
             convexity: 1.0,
             energy: f64::NAN,
             residual: f64::INFINITY,
+            iterations: 0,
         })
     }
 
@@ -164,30 +167,29 @@ impl TileSolver {
     pub fn solve(&mut self, deformation: &CoarseDeformation) -> Result<TileEquilibrium, TileError> {
         self.move_to(deformation)?;
         self.extrapolate();
-        let mut iterations = 0;
+        self.iterations = 0;
         loop {
             self.linearise()?;
-            if self.residual <= self.settings.tolerance || iterations >= self.settings.max_iterations {
+            if self.residual <= self.settings.tolerance || self.iterations >= self.settings.max_iterations {
                 break;
             }
             if !self.advance()? {
                 break;
             }
-            iterations += 1;
         }
         self.before = self.last.replace((self.system.deformation, self.displacement.clone()));
-        Ok(self.found(iterations))
+        Ok(self.found())
     }
 
-    /// The displacements as they are, as an equilibrium of so many iterations.
-    fn found(&self, iterations: usize) -> TileEquilibrium {
+    /// The displacements as they are, as an equilibrium.
+    fn found(&self) -> TileEquilibrium {
         let of_blocks = self.displacement.as_chunks::<SLOTS>().0;
         TileEquilibrium {
             deformation: self.system.deformation,
             displacement: of_blocks.iter().map(|u| [u[0], u[1], u[2]]).collect(),
             energy_density: self.energy / self.system.tile.area(),
             stress: CoarseStress::gather(&self.system, &self.displacement),
-            iterations,
+            iterations: self.iterations,
             residual: self.residual,
             converged: self.residual <= self.settings.tolerance,
         }
@@ -283,6 +285,7 @@ impl TileSolver {
     fn advance(&mut self) -> Result<bool, TileError> {
         let weight = self.system.tile.area() * self.displacement.len() as f64 / (3.0 * SLOTS as f64);
         while self.shift < LARGEST_SHIFT {
+            self.iterations += 1;
             let used = if self.shift < LEAST_SHIFT { 0.0 } else { self.shift * self.force / self.length };
             if !self.system.second.factor(used, weight)? {
                 if self.convexity < 1.0 {
@@ -317,7 +320,7 @@ impl TileSolver {
                 let resolved = predicted > 1e-11 * energy.abs();
                 let trust = if resolved { gained / predicted } else { 1.0 };
                 if attempt == 0 {
-                    self.judge(trust, part);
+                    self.judge(trust, part, (curvature / square).max(0.0) * self.length / self.force);
                 }
                 if trust > 1e-3 {
                     return Ok(true);
@@ -336,13 +339,14 @@ impl TileSolver {
 }
 
 impl TileSolver {
-    /// Learns from how much of the predicted energy a step has gained.
-    fn judge(&mut self, trust: f64, part: f64) {
+    /// Learns from how much of the predicted energy a step has gained, along which the energy has this curvature.
+    fn judge(&mut self, trust: f64, part: f64, along: f64) {
         if trust > 0.75 && part > 0.9 {
-            self.shift *= 0.2;
+            self.shift *= 0.3;
             self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
         } else if trust.is_nan() || trust < 0.25 {
-            self.shift = (4.0 * self.shift).max(LEAST_SHIFT);
+            // At least as stiff as the valley is along the step.
+            self.shift = (4.0 * self.shift).max(along).max(LEAST_SHIFT);
         }
     }
 }
