@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rayon::prelude::*;
+use wale::energy::ContactReading;
 use wale_lab::yarn_tile::{CoarseDeformation, EquilibriumSettings, RodMaterial, TileSolver, read_pattern};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -16,14 +17,18 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 const STEPS: u32 = 20;
 const STEP: f64 = 0.01;
 
+/// Readings of contact with a stiffness \[J/m²\]: very soft as printed, and as hard as a yarn that keeps its shape.
+const CONTACTS: [(ContactReading, f64); 2] = [(ContactReading::SquareOfBarrier, 1e2), (ContactReading::Barrier, 2.3e3)];
+
 fn main() -> Result<(), Failure> {
     let mut arguments = std::env::args().skip(1);
     let near = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/yarn-tiles-madypg/stockinette.pyp");
     let path = arguments.next().map_or(near, PathBuf::from);
     let paths = arguments.next().map_or(Ok(8usize), |text| text.parse())?;
     let tile = read_pattern(&path.display().to_string(), &std::fs::read_to_string(&path)?)?;
-    let material = RodMaterial::solid_rod(tile.radius(), 1e6, 1e2);
-    for free in [false, true] {
+    for (free, (reading, contact)) in [false, true].into_iter().flat_map(|free| CONTACTS.map(|contact| (free, contact)))
+    {
+        let material = RodMaterial { reading, ..RodMaterial::solid_rod(tile.radius(), 1e6, contact) };
         let run = |index: usize| -> Result<[usize; 2], Failure> {
             let angle = std::f64::consts::PI * index as f64 / paths as f64;
             let make = if free { TileSolver::free_compression } else { TileSolver::new };
@@ -45,7 +50,7 @@ fn main() -> Result<(), Failure> {
         let all = paths * (STEPS as usize + 1);
         let (reached, iterations) = counts.iter().fold((0, 0), |(a, b), c| (a + c[0], b + c[1]));
         println!(
-            "{} vertices, compression {}: {reached} of {all} equilibria in {seconds:.2} s on {} threads: {:.1} a second, \
+            "{} vertices, {reading:?}, compression {}: {reached} of {all} equilibria in {seconds:.2} s on {} threads: {:.1} a second, \
              {:.1} iterations each, {:.2} ms an iteration and thread",
             tile.vertex_count(),
             if free { "free" } else { "held" },

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use wale::energy::ContactReading;
 use wale_lab::yarn_tile::{
-    CoarseDeformation, EquilibriumSettings, RodMaterial, TileSolver, YarnTile, contact_radius, read_pattern,
+    CoarseDeformation, EquilibriumSettings, RestShapeSettings, RodMaterial, TileSolver, YarnTile, contact_radius,
+    estimate_rest_shapes, read_pattern,
 };
 
 fn pattern(name: &str) -> Option<YarnTile> {
@@ -52,4 +54,22 @@ fn stockinette_follows_a_path_of_strain() {
         least.is_some_and(|least| compression > least),
         "what is stretched becomes narrower: {compression} {least:?}"
     );
+}
+
+#[test]
+fn rest_shapes_of_stockinette_take_its_stress_away() {
+    let Some(tile) = pattern("stockinette.pyp") else { return };
+    // As [Sperl2022] has it: radii from the radius at which all edges touch.
+    let radius = contact_radius(&tile);
+    let material = RodMaterial { reading: ContactReading::Barrier, ..RodMaterial::solid_rod(radius, 1e6, 1e2) };
+    let report = estimate_rest_shapes(&tile, &material, &RestShapeSettings::default()).unwrap();
+    let last = *report.stress.last().unwrap();
+    println!(
+        "radius {radius}, stress {} to {:?}, moved {} R",
+        report.stress_before,
+        report.stress,
+        report.moved / radius
+    );
+    assert!(report.equilibrium.converged && last < 1e-2 * report.stress_before, "{:?}", report.stress);
+    assert!(report.moved < 2.0 * radius, "{}", report.moved);
 }

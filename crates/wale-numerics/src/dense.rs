@@ -87,8 +87,8 @@ impl SmallCholesky {
                 let before: f64 = (0..j).map(|k| lower[i * n + k] * lower[j * n + k]).sum();
                 let left = entry(i, j) - before;
                 if i == j {
-                    // Written so that a NaN fails, and a pivot that is nothing but round-off.
-                    if !(left > PIVOT * entry(i, i).abs()) {
+                    // A pivot that is nothing but round-off is none.
+                    if left.is_nan() || left <= PIVOT * entry(i, i).abs() {
                         return false;
                     }
                     lower[i * n + i] = left.sqrt();

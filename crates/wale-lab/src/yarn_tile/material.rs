@@ -2,6 +2,9 @@
 
 use wale::energy::{ContactPhase, ContactReading};
 
+use super::equilibrium::TileError;
+use super::tile::YarnTile;
+
 /// Mechanical parameters of the yarns of a tile [Sperl2022, section 6].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodMaterial {
@@ -46,5 +49,36 @@ impl RodMaterial {
     /// Distance of centrelines within which yarns touch \[m\].
     pub(super) fn reach(&self) -> f64 {
         2.0 * self.contact[0].radius.max(self.contact[1].radius)
+    }
+
+    /// Whether a tile can be made of it.
+    pub(super) fn check(&self, tile: &YarnTile) -> Result<(), TileError> {
+        let [outer, inner] = self.contact;
+        let fault = |what: &'static str, value: f64, why: &'static str| Err(TileError::Material { what, value, why });
+        for (what, value) in [
+            ("stretch stiffness", self.soft_stretch),
+            ("large-stretch stiffness", self.stiff_stretch),
+            ("outer contact radius", outer.radius),
+            ("inner contact radius", inner.radius),
+        ] {
+            if value <= 0.0 || !value.is_finite() {
+                return fault(what, value, "it must be positive");
+            }
+        }
+        for (what, value) in [
+            ("onset of large stretch", self.onset),
+            ("bending stiffness", self.bending),
+            ("outer contact stiffness", outer.stiffness),
+            ("inner contact stiffness", inner.stiffness),
+        ] {
+            if value < 0.0 || !value.is_finite() {
+                return fault(what, value, "it must not be negative");
+            }
+        }
+        // Beyond this every yarn would touch every image of every other.
+        if self.reach() > tile.periods()[0] + tile.periods()[1] {
+            return fault("outer contact radius", 0.5 * self.reach(), "yarns would reach over the whole tile");
+        }
+        Ok(())
     }
 }

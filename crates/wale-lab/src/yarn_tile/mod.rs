@@ -7,6 +7,7 @@ mod equilibrium;
 mod kinds;
 mod material;
 mod neighbours;
+mod path;
 mod pattern_file;
 mod rest_shape;
 mod stress;

@@ -215,6 +215,24 @@ fn the_same_bits_on_any_number_of_threads() {
 }
 
 #[test]
+fn impossible_materials_are_errors() {
+    let tile = straight(4);
+    let good = material(&tile);
+    let with_radius = |radius: f64| RodMaterial { contact: [ContactPhase { radius, stiffness: 1.0 }; 2], ..good };
+    for material in [
+        RodMaterial { soft_stretch: 0.0, ..good },
+        RodMaterial { bending: f64::NAN, ..good },
+        RodMaterial { onset: -0.1, ..good },
+        with_radius(0.0),
+        with_radius(1.0),
+        with_radius(f64::NAN),
+    ] {
+        let error = TileSolver::new(&tile, &material, settings()).expect_err("no material");
+        assert!(matches!(error, TileError::Material { .. }), "{error}");
+    }
+}
+
+#[test]
 fn impossible_deformations_are_errors() {
     let tile = straight(4);
     let mut solver = TileSolver::new(&tile, &material(&tile), settings()).unwrap();

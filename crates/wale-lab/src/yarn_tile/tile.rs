@@ -130,7 +130,7 @@ impl YarnTile {
             }
         }
         for (index, &value) in rest_curvatures.iter().enumerate() {
-            if !(value >= 0.0 && value.is_finite()) {
+            if value < 0.0 || !value.is_finite() {
                 return Err(TileFault::Rest { what: "curvature", index, value });
             }
         }
