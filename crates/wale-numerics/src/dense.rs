@@ -66,6 +66,61 @@ fn reserve(memory: &mut Option<MemBuffer>, n: usize) -> &mut MemBuffer {
     memory.get_or_insert_with(|| MemBuffer::new(request))
 }
 
+/// The Cholesky factor of a matrix of a handful of rows.
+#[derive(Clone, Debug, Default)]
+pub struct SmallCholesky {
+    n: usize,
+    /// Lower triangle by rows.
+    lower: Vec<f64>,
+}
+
+impl SmallCholesky {
+    /// Factors the `n × n` matrix with these entries, of which those on and below the diagonal are asked for; whether it is
+    /// positive definite.
+    pub fn factor(&mut self, n: usize, entry: impl Fn(usize, usize) -> f64) -> bool {
+        self.n = n;
+        self.lower.clear();
+        self.lower.resize(n * n, 0.0);
+        let lower = &mut self.lower;
+        for i in 0..n {
+            for j in 0..=i {
+                let before: f64 = (0..j).map(|k| lower[i * n + k] * lower[j * n + k]).sum();
+                let left = entry(i, j) - before;
+                if i == j {
+                    // A pivot that is nothing but round-off is none.
+                    if left.is_nan() || left <= PIVOT * entry(i, i).abs() {
+                        return false;
+                    }
+                    lower[i * n + i] = left.sqrt();
+                } else {
+                    lower[i * n + j] = left / lower[j * n + j];
+                }
+            }
+        }
+        true
+    }
+
+    /// Replaces a right side by the solution.
+    ///
+    /// # Panics
+    /// If it has not the length of the matrix.
+    pub fn solve(&self, x: &mut [f64]) {
+        let n = self.n;
+        assert_eq!(x.len(), n);
+        for i in 0..n {
+            let before: f64 = (0..i).map(|k| self.lower[i * n + k] * x[k]).sum();
+            x[i] = (x[i] - before) / self.lower[i * n + i];
+        }
+        for i in (0..n).rev() {
+            let after: f64 = (i + 1..n).map(|k| self.lower[k * n + i] * x[k]).sum();
+            x[i] = (x[i] - after) / self.lower[i * n + i];
+        }
+    }
+}
+
+/// Part of its diagonal entry below which a pivot counts as none.
+const PIVOT: f64 = 1e-14;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,5 +140,21 @@ mod tests {
         assert_eq!(solve(&[f64::NAN], &[1.0]), None);
         let x = solve(&[4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 2.0], &[4.0, 8.0, 2.0]).expect("memory grows");
         assert!(x.iter().zip([1.0, 2.0, 1.0]).all(|(x, exact)| (x - exact).abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_small_factor_solves_and_says_when_there_is_none() {
+        let matrix = [[4.0, 1.0, 0.5], [1.0, 3.0, -0.2], [0.5, -0.2, 2.0]];
+        let mut factor = SmallCholesky::default();
+        assert!(factor.factor(3, |i, j| matrix[i][j]));
+        let exact = [1.0, -2.0, 0.5];
+        let mut x = matrix.map(|row| row.iter().zip(exact).map(|(a, b)| a * b).sum::<f64>());
+        factor.solve(&mut x);
+        assert!(x.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-14));
+        for broken in [-1.0, 0.0, f64::NAN] {
+            assert!(!factor.factor(2, |i, j| if i == j { [1.0, broken][i] } else { 0.0 }));
+        }
+        assert!(factor.factor(0, |_, _| 0.0));
+        factor.solve(&mut []);
     }
 }

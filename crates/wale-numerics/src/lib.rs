@@ -6,6 +6,7 @@ pub mod bordered;
 pub mod check;
 pub mod coarse_space;
 pub mod conjugate_gradient;
+pub mod constrained;
 pub mod dense;
 pub mod eigen;
 pub mod incomplete_cholesky;

@@ -61,6 +61,8 @@ pub struct SparseCholesky {
     symbolic: SymbolicCholesky<u32>,
     factor: Vec<f64>,
     right_hand_side: Vec<f64>,
+    /// Several right sides over the unknowns, one after the other.
+    columns: Vec<f64>,
     memory: MemBuffer,
     factored: bool,
 }
@@ -123,6 +125,7 @@ impl SparseCholesky {
             symbolic,
             factor,
             right_hand_side: vec![0.0; unknowns],
+            columns: Vec::new(),
             memory,
             factored: false,
         })
@@ -193,6 +196,39 @@ impl SparseCholesky {
         x.fill(0.0);
         for (&value, &slot) in self.right_hand_side.iter().zip(&self.slots) {
             x[slot as usize] = value;
+        }
+    }
+
+    /// Replaces several right sides at once, which is quicker than one after the other: the factor is read once.
+    ///
+    /// # Panics
+    /// As [`Self::solve_in_place`].
+    pub fn solve_columns_in_place(&mut self, columns: &mut [Vec<f64>]) {
+        assert!(self.factored, "solve without a factor");
+        assert!(columns.iter().all(|column| column.len() == self.pattern.rows() * SLOTS));
+        let unknowns = self.unknowns();
+        if unknowns == 0 || columns.is_empty() {
+            return columns.iter_mut().for_each(|column| column.fill(0.0));
+        }
+        let request = self.symbolic.solve_in_place_scratch::<f64>(columns.len(), Par::Seq);
+        if self.memory.len() < request.unaligned_bytes_required() {
+            self.memory = MemBuffer::new(request);
+        }
+        self.columns.clear();
+        for column in columns.iter() {
+            self.columns.extend(self.slots.iter().map(|&slot| column[slot as usize]));
+        }
+        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut self.columns, unknowns, columns.len()),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+        for (column, values) in columns.iter_mut().zip(self.columns.chunks_exact(unknowns)) {
+            column.fill(0.0);
+            for (&value, &slot) in values.iter().zip(&self.slots) {
+                column[slot as usize] = value;
+            }
         }
     }
 

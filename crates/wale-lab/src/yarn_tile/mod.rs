@@ -1,1 +1,27 @@
 //! Periodic tiles of yarns in full contact [Sperl2022, sections 6 and 7].
+
+mod closest;
+mod coarse;
+mod constraints;
+mod equilibrium;
+mod kinds;
+mod material;
+mod neighbours;
+mod path;
+mod pattern_file;
+mod rest_shape;
+mod stress;
+mod system;
+#[cfg(test)]
+mod test_tiles;
+#[cfg(test)]
+mod tests;
+mod tile;
+
+pub use coarse::CoarseDeformation;
+pub use equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolver};
+pub use material::RodMaterial;
+pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
+pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
+pub use stress::{CoarseStress, bending_stiffness};
+pub use tile::{Edge, TileFault, YarnTile};

@@ -31,6 +31,11 @@ pub trait Element<const N: usize>: Copy + Send + Sync {
         sum.add(&self.convex(q));
     }
 
+    /// Whether energy and derivatives may differ from zero here: a quick look that spares contacts out of reach the rest.
+    fn acts(&self, _q: &[f64; N]) -> bool {
+        true
+    }
+
     /// Calls `visit` with the name and energy \[J\] of every part.
     fn parts(&self, q: &[f64; N], visit: &mut impl FnMut(&'static str, f64)) {
         visit(Self::NAME, self.energy(q));

@@ -1,0 +1,75 @@
+//! Tiles of an independent simulator are read and come to rest. Skipped, and said so, where `../shared/data` is not there.
+
+use std::path::{Path, PathBuf};
+
+use wale::energy::ContactReading;
+use wale_lab::yarn_tile::{
+    CoarseDeformation, EquilibriumSettings, RestShapeSettings, RodMaterial, TileSolver, YarnTile, contact_radius,
+    estimate_rest_shapes, read_pattern,
+};
+
+fn pattern(name: &str) -> Option<YarnTile> {
+    let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/yarn-tiles-madypg");
+    let path = folder.join(name);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        eprintln!("SKIPPED: {} is not there", path.display());
+        return None;
+    };
+    Some(read_pattern(name, &text).unwrap_or_else(|error| panic!("{error}")))
+}
+
+#[test]
+fn all_patterns_read_with_the_rest_lengths_of_their_edges() {
+    // Drawn near their equilibrium: no edge is stretched by more than a tenth, so rest lengths stand with the right edges.
+    for (name, vertices, yarns) in
+        [("stocktiny.pyp", 13, 1), ("stockinette.pyp", 100, 2), ("basket.pyp", 80, 8), ("satin.pyp", 130, 10)]
+    {
+        let Some(tile) = pattern(name) else { return };
+        assert_eq!((tile.vertex_count(), tile.yarn_count()), (vertices, yarns), "{name}");
+        for (length, rest) in tile.lengths().iter().zip(tile.rest_lengths()) {
+            assert!((length / rest - 1.0).abs() < 0.1, "{name}: {length} {rest}");
+        }
+        let radius = contact_radius(&tile) / tile.radius();
+        assert!((0.5..2.0).contains(&radius), "{name}: {radius}");
+    }
+}
+
+#[test]
+fn stockinette_follows_a_path_of_strain() {
+    let Some(tile) = pattern("stockinette.pyp") else { return };
+    let material = RodMaterial::solid_rod(tile.radius(), 1e6, 1e2);
+    let mut solver = TileSolver::free_compression(&tile, &material, EquilibriumSettings::default()).unwrap();
+    let mut least = None;
+    let (mut compression, mut last) = (0.0, f64::NEG_INFINITY);
+    for step in 0..6 {
+        let stretch = 0.04 * f64::from(step);
+        let found = solver.solve(&CoarseDeformation::stretched(0.0, stretch, compression)).unwrap();
+        assert!(found.converged, "{stretch}: {}", found.residual);
+        assert!(found.stress.stretch > last, "{stretch}: stretching costs ever more");
+        (compression, last) = (found.deformation.compression(), found.stress.stretch);
+        println!("{stretch} {compression} {last}");
+        least.get_or_insert(compression);
+    }
+    assert!(
+        least.is_some_and(|least| compression > least),
+        "what is stretched becomes narrower: {compression} {least:?}"
+    );
+}
+
+#[test]
+fn rest_shapes_of_stockinette_take_its_stress_away() {
+    let Some(tile) = pattern("stockinette.pyp") else { return };
+    // As [Sperl2022] has it: radii from the radius at which all edges touch.
+    let radius = contact_radius(&tile);
+    let material = RodMaterial { reading: ContactReading::Barrier, ..RodMaterial::solid_rod(radius, 1e6, 1e2) };
+    let report = estimate_rest_shapes(&tile, &material, &RestShapeSettings::default()).unwrap();
+    let last = *report.stress.last().unwrap();
+    println!(
+        "radius {radius}, stress {} to {:?}, moved {} R",
+        report.stress_before,
+        report.stress,
+        report.moved / radius
+    );
+    assert!(report.equilibrium.converged && last < 1e-2 * report.stress_before, "{:?}", report.stress);
+    assert!(report.moved < 2.0 * radius, "{}", report.moved);
+}
