@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use wale_lab::shell::membrane_fit::{MembraneFitSettings, StretchTest, fit_membrane};
+use wale_lab::shell::membrane_fit::{MeasuredStretch, MembraneFitSettings, StretchTest, fit_membrane};
 use wale_lab::shell::{StretchCurve, StretchPoint};
 
 fn main() -> ExitCode {
@@ -31,7 +31,9 @@ fn main() -> ExitCode {
     );
     let (mut sum, mut count) = ([0.0; 2], 0.0);
     for (fabric, curves) in read(&text) {
-        match fit_membrane(&curves, &StretchTest::Uniform, &MembraneFitSettings::default()) {
+        let uniform = |curve| MeasuredStretch::new(curve, StretchTest::Uniform);
+        let curves: Vec<_> = curves.into_iter().map(uniform).collect();
+        match fit_membrane(&curves, &MembraneFitSettings::default()) {
             Ok(fit) => {
                 let k: String = fit.stiffness.to_array().iter().map(|k| format!("{k:9.3}")).collect();
                 let errors = [fit.force_error, fit.compression_error];

@@ -6,7 +6,7 @@ use wale::energy::BendingStiffness;
 use crate::card_file::ShellCardFile;
 use crate::fabric_file::FabricFile;
 use crate::shell::bending_fit::{BendingFit, PearCurve, fit_bending};
-use crate::shell::membrane_fit::{MembraneFit, MembraneFitSettings, StretchTest, fit_membrane};
+use crate::shell::membrane_fit::{MeasuredStretch, MembraneFit, MembraneFitSettings, StretchTest, fit_membrane};
 use crate::shell::stretch_curve::{StretchCurve, StretchPoint};
 use crate::shell::{ClampedStretch, PearLoop, ShellCard, ShellError};
 
@@ -46,7 +46,7 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
         return Err(FabricFitError::NoStretchTest);
     }
     let mut open = fabric.gaps();
-    let measured: Vec<(StretchCurve, StretchTest)> = fabric
+    let measured: Vec<MeasuredStretch> = fabric
         .stretch
         .iter()
         .map(|test| {
@@ -66,7 +66,11 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
                 edge: EDGE * size.length.min(size.width),
                 ..ClampedStretch::default()
             };
-            (StretchCurve { angle: test.direction, points }, StretchTest::Clamped(clamped))
+            MeasuredStretch {
+                curve: StretchCurve { angle: test.direction, points },
+                test: StretchTest::Clamped(clamped),
+                compression: test.curve.compression.is_some(),
+            }
         })
         .collect();
     let membrane = fit_membrane(&measured, settings)?;

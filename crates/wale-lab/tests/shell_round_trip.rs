@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::shell::bending_fit::{PearCurve, distances, fit_bending};
-use wale_lab::shell::membrane_fit::{MembraneFitSettings, StretchTest, fit_membrane};
+use wale_lab::shell::membrane_fit::{MeasuredStretch, MembraneFitSettings, StretchTest, fit_membrane};
 use wale_lab::shell::uniform::uniform_stretch;
 use wale_lab::shell::{ClampedStretch, PearLoop, ShellCard, StretchCurve};
 
@@ -17,10 +17,11 @@ fn clamped_swatches_of_a_known_fabric_give_its_stress_back() {
     let ranges = [(0.0, 1.0), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)];
     let curves = ranges.map(|(angle, largest)| {
         let stretches: Vec<f64> = (1..=6).map(|k| largest * f64::from(k) / 6.0).collect();
-        StretchCurve { angle, points: ClampedStretch { angle, ..test }.run(&card, &stretches).unwrap() }
+        let points = ClampedStretch { angle, ..test }.run(&card, &stretches).unwrap();
+        MeasuredStretch::new(StretchCurve { angle, points }, StretchTest::Clamped(test))
     });
     let settings = MembraneFitSettings { starts: 2, ..MembraneFitSettings::default() };
-    let fit = fit_membrane(&curves, &StretchTest::Clamped(test), &settings).unwrap();
+    let fit = fit_membrane(&curves, &settings).unwrap();
     assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
     // The uniform strip, which no clamped swatch is, comes out as that of the truth: within a per cent.
     for (angle, largest) in ranges {
@@ -32,7 +33,7 @@ fn clamped_swatches_of_a_known_fabric_give_its_stress_back() {
     }
     // The same bits on one thread.
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let again = one.install(|| fit_membrane(&curves, &StretchTest::Clamped(test), &settings).unwrap());
+    let again = one.install(|| fit_membrane(&curves, &settings).unwrap());
     assert_eq!(fit, again);
 }
 

@@ -10,13 +10,32 @@ use super::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit
 use super::stretch_curve::{StretchCurve, StretchPoint};
 use super::uniform::uniform_stretch;
 
-/// How the curves were measured.
+/// How a curve was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StretchTest {
     /// In uniform stretch without stress across; forces are a width \[N/m\].
     Uniform,
     /// Between clamps; forces are of the swatch \[N\]. The direction is that of each curve.
     Clamped(ClampedStretch),
+}
+
+/// A measured curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredStretch {
+    /// The curve.
+    pub curve: StretchCurve,
+    /// How it was measured; of a clamped test, its angle is the curve's.
+    pub test: StretchTest,
+    /// Whether compression was measured too.
+    pub compression: bool,
+}
+
+impl MeasuredStretch {
+    /// A curve with its compression.
+    #[must_use]
+    pub fn new(curve: StretchCurve, test: StretchTest) -> Self {
+        Self { curve, test, compression: true }
+    }
 }
 
 /// How a fit is done.
@@ -98,15 +117,18 @@ struct Answer {
 /// # Errors
 /// [`ShellError::Fit`] if there is nothing measured, or no start can be tested; [`ShellError::Number`] if a curve folds back.
 pub fn fit_membrane(
-    curves: &[StretchCurve],
-    test: &StretchTest,
+    measured: &[MeasuredStretch],
     settings: &MembraneFitSettings,
 ) -> Result<MembraneFit, ShellError> {
     let targets: Vec<Vec<StretchPoint>> =
-        curves.iter().map(|curve| curve.targets(settings.targets)).collect::<Result<_, _>>()?;
-    let count = targets.iter().map(Vec::len).sum::<usize>();
-    let mean = |of: fn(&StretchPoint) -> f64| targets.iter().flatten().map(|t| of(t).abs()).sum::<f64>() / count as f64;
-    let (mean_force, mean_compression) = (mean(|t| t.force), mean(|t| t.compression));
+        measured.iter().map(|one| one.curve.targets(settings.targets)).collect::<Result<_, _>>()?;
+    // Each target with whether its compression was measured.
+    let all = || targets.iter().zip(measured).flat_map(|(targets, one)| targets.iter().map(|t| (t, one.compression)));
+    let count = all().count();
+    let wide = all().filter(|(_, measured)| *measured).count();
+    let mean_force = all().map(|(t, _)| t.force.abs()).sum::<f64>() / count as f64;
+    let mean_compression =
+        all().filter(|(_, measured)| *measured).map(|(t, _)| t.compression.abs()).sum::<f64>() / wide.max(1) as f64;
     // Written so that a NaN fails.
     if !(mean_force > 0.0 && mean_force < f64::INFINITY && mean_compression.is_finite()) {
         return Err(ShellError::Fit("no force was measured".into()));
@@ -115,15 +137,16 @@ pub fn fit_membrane(
 
     let answers = |parameters: &[f64; MembraneStiffness::COUNT]| -> Option<Vec<Vec<Answer>>> {
         let stiffness = MembraneStiffness::from_array(*parameters);
-        (0..curves.len()).into_par_iter().map(|k| answer(test, &stiffness, curves[k].angle, &targets[k])).collect()
+        let one = |k: usize| answer(&measured[k].test, &stiffness, measured[k].curve.angle, &targets[k]);
+        (0..measured.len()).into_par_iter().map(one).collect()
     };
     let evaluate = |parameters: &[f64; MembraneStiffness::COUNT]| {
         let mut out = Residuals::default();
-        for (target, answer) in targets.iter().flatten().zip(answers(parameters)?.iter().flatten()) {
+        for ((target, compression), answer) in all().zip(answers(parameters)?.iter().flatten()) {
             let by_log = |slope: &[f64; 6], weight: f64| std::array::from_fn(|k| weight * slope[k] * parameters[k]);
             let force = (answer.point.force - target.force) / mean_force;
             out.push(force, by_log(&answer.force_slope, 1.0 / mean_force));
-            if weigh_compression > 0.0 {
+            if compression && weigh_compression > 0.0 {
                 let compression = (answer.point.compression - target.compression) * weigh_compression;
                 out.push(compression, by_log(&answer.compression_slope, weigh_compression));
             }
@@ -131,8 +154,7 @@ pub fn fit_membrane(
         Some(out)
     };
 
-    let width = if let StretchTest::Clamped(test) = test { test.width } else { 1.0 };
-    let (starts, unit) = starts(curves, &targets, width, settings.starts);
+    let (starts, unit) = starts(measured, &targets, settings.starts);
     let bounds = BOUNDS.map(|part| part * unit);
     let search =
         LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
@@ -144,13 +166,16 @@ pub fn fit_membrane(
         .zip(&found)
         .map(|(targets, answers)| targets.iter().zip(answers).map(|(target, answer)| [*target, answer.point]).collect())
         .collect();
-    let error = |of: fn(&StretchPoint) -> f64, mean: f64| {
-        points.iter().flatten().map(|[target, found]| (of(found) - of(target)).abs()).sum::<f64>() / count as f64 * mean
-    };
+    let pairs = || points.iter().flatten().zip(all()).map(|([target, found], (_, measured))| (target, found, measured));
+    let force_off: f64 = pairs().map(|(target, found, _)| (found.force - target.force).abs()).sum();
+    let compression_off: f64 = pairs()
+        .filter(|(.., measured)| *measured)
+        .map(|(target, found, _)| (found.compression - target.compression).abs())
+        .sum();
     Ok(MembraneFit {
         stiffness: MembraneStiffness::from_array(least_squares.parameters),
-        force_error: error(|p| p.force, 1.0 / mean_force),
-        compression_error: error(|p| p.compression, weigh_compression),
+        force_error: force_off / count as f64 / mean_force,
+        compression_error: compression_off / wide.max(1) as f64 * weigh_compression,
         points,
         least_squares,
     })
@@ -189,16 +214,16 @@ fn answer(
 
 /// Where to begin, from the moduli of the measured curves; and the geometric mean of the moduli \[N/m\].
 fn starts(
-    curves: &[StretchCurve],
+    measured: &[MeasuredStretch],
     targets: &[Vec<StretchPoint>],
-    width: f64,
     count: usize,
 ) -> (Vec<[f64; MembraneStiffness::COUNT]>, f64) {
     // The curve nearest to a direction stands in for one that is missing.
     let modulus = |angle: f64| {
-        let away = |k: &usize| (curves[*k].angle - angle).abs();
-        let nearest = (0..curves.len()).filter(|&k| !targets[k].is_empty()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let away = |k: &usize| (measured[*k].curve.angle - angle).abs();
+        let nearest = (0..measured.len()).filter(|&k| !targets[k].is_empty()).min_by(|a, b| away(a).total_cmp(&away(b)));
         let points = nearest.map_or(&[][..], |k| &targets[k][..]);
+        let width = nearest.map_or(1.0, |k| if let StretchTest::Clamped(test) = &measured[k].test { test.width } else { 1.0 });
         let sum = |of: fn(&StretchPoint) -> f64| points.iter().map(of).sum::<f64>();
         (sum(|p| p.force) / (width * sum(|p| p.stretch))).abs().clamp(1e-6, 1e9)
     };
@@ -218,20 +243,36 @@ mod tests {
 
     const TRUTH: MembraneStiffness = MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0 };
 
+    fn uniform(angle: f64, largest: f64) -> MeasuredStretch {
+        MeasuredStretch::new(uniform_curve(&TRUTH, angle, largest, 60).unwrap(), StretchTest::Uniform)
+    }
+
+    #[test]
+    fn a_curve_without_compression_says_nothing_about_it() {
+        let mut curves: Vec<_> = [(0.0, 1.2), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)].map(|(a, s)| uniform(a, s)).into();
+        let whole = fit_membrane(&curves, &MembraneFitSettings::default()).unwrap();
+        for point in &mut curves[2].curve.points {
+            point.compression = 0.7;
+        }
+        curves[2].compression = false;
+        let fit = fit_membrane(&curves, &MembraneFitSettings::default()).unwrap();
+        assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
+        assert!((fit.stiffness.xx / whole.stiffness.xx - 1.0).abs() < 0.05, "{:?}", fit.stiffness);
+    }
+
     #[test]
     fn uniform_curves_of_a_known_fabric_are_recovered() {
         let curves: Vec<_> = [(0.0, 1.2), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)]
-            .map(|(angle, largest)| uniform_curve(&TRUTH, angle, largest, 60).unwrap())
+            .map(|(angle, largest)| uniform(angle, largest))
             .into();
-        let fit = fit_membrane(&curves, &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap();
+        let fit = fit_membrane(&curves, &MembraneFitSettings::default()).unwrap();
         assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
         assert!((fit.stiffness.yy / TRUTH.yy - 1.0).abs() < 0.05, "{:?}", fit.stiffness);
     }
 
     #[test]
     fn what_a_missing_direction_would_tell_is_reported() {
-        let weft = uniform_curve(&TRUTH, 0.0, 0.8, 60).unwrap();
-        let fit = fit_membrane(&[weft], &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap();
+        let fit = fit_membrane(&[uniform(0.0, 0.8)], &MembraneFitSettings::default()).unwrap();
         assert!(fit.force_error < 0.01);
         let missing = fit.undetermined();
         assert!(missing.contains(&"k_ss") && !missing.contains(&"k_xx"), "{missing:?}");
@@ -239,9 +280,9 @@ mod tests {
 
     #[test]
     fn nothing_measured_is_an_error() {
-        let empty = StretchCurve { angle: 0.0, points: Vec::new() };
+        let empty = MeasuredStretch::new(StretchCurve { angle: 0.0, points: Vec::new() }, StretchTest::Uniform);
         for curves in [&[][..], &[empty][..]] {
-            let error = fit_membrane(curves, &StretchTest::Uniform, &MembraneFitSettings::default()).unwrap_err();
+            let error = fit_membrane(curves, &MembraneFitSettings::default()).unwrap_err();
             assert!(error.to_string().contains("no force"), "{error}");
         }
     }
