@@ -102,7 +102,7 @@ fn module_of(file: &str) -> Vec<&str> {
 fn rooms_named(module: &[&str], code: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     let code: String = code.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
-    for krate in ["wale_numerics", "wale_cli", "wale"] {
+    for krate in ["wale_numerics", "wale_lab", "wale_cli", "wale"] {
         let named = code.match_indices(&format!("{krate}::")).any(|(at, _)| !code[..at].ends_with(is_word));
         if named {
             found.insert(krate.to_owned());
@@ -213,7 +213,7 @@ fn rooms_use_lower_floors_alone() {
 #[test]
 fn files_are_short_and_say_what_they_are() {
     let mut faults = Vec::new();
-    for krate in ["wale", "wale-numerics", "wale-cli"] {
+    for krate in ["wale", "wale-numerics", "wale-lab", "wale-cli"] {
         for (file, code) in sources(krate) {
             let lines = code.lines().count();
             if lines > MOST_LINES {
@@ -230,7 +230,7 @@ fn files_are_short_and_say_what_they_are() {
 #[test]
 fn the_library_is_silent_and_timeless() {
     let mut faults = Vec::new();
-    for krate in ["wale", "wale-numerics"] {
+    for krate in ["wale", "wale-numerics", "wale-lab"] {
         for (file, code) in sources(krate) {
             let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));
             for (number, line) in code.enumerate() {
