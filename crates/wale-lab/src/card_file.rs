@@ -76,7 +76,9 @@ impl ShellCardFile {
             let _ = writeln!(text, "{name} = \"{value:?} N/m\"");
         }
         let within: Vec<String> = self.membrane_within.iter().map(|&factor| number(factor)).collect();
-        text.push_str("# Each may be so many times larger or smaller, with 95 % confidence; inf where the tests do not tell.\n");
+        text.push_str(
+            "# Each may be so many times larger or smaller, with 95 % confidence; inf where the tests do not tell.\n",
+        );
         let _ = writeln!(text, "within = [{}]", within.join(", "));
         if let Some(bending) = self.bending {
             text.push_str("# Along the weft, the bias and the warp.\n");
@@ -93,10 +95,15 @@ impl ShellCardFile {
     pub fn of(file: &TextFile) -> Result<Self, SceneError> {
         let text: Text = file.parse()?;
         if text.schema != SCHEMA {
-            return Err(file.error("schema", format!("schema {} is not known", text.schema), format!("write {SCHEMA}")));
+            return Err(file.error(
+                "schema",
+                format!("schema {} is not known", text.schema),
+                format!("write {SCHEMA}"),
+            ));
         }
         let shell = text.shell;
-        let values = [shell.k_xx.si(), shell.k_xy.si(), shell.k_yy.si(), shell.k_ss.si(), shell.k_n1.si(), shell.k_n2.si()];
+        let values =
+            [shell.k_xx.si(), shell.k_xy.si(), shell.k_yy.si(), shell.k_ss.si(), shell.k_n1.si(), shell.k_n2.si()];
         Ok(Self {
             title: text.title,
             areal_mass: text.areal_mass.map(Quantity::si),

@@ -82,13 +82,19 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
             None
         }
         Some(areal_mass) => {
-            let card = ShellCard { membrane: membrane.stiffness, bending: BendingStiffness::isotropic(0.0), areal_mass };
-            let curves: Vec<PearCurve> = fabric.bending.iter().map(|test| PearCurve {
-                angle: test.direction,
-                points: test.curve.distance.iter().zip(&test.curve.aspect_ratio).map(|(&d, &r)| [d, r]).collect(),
-            }).collect();
+            let card =
+                ShellCard { membrane: membrane.stiffness, bending: BendingStiffness::isotropic(0.0), areal_mass };
+            let curves: Vec<PearCurve> = fabric
+                .bending
+                .iter()
+                .map(|test| PearCurve {
+                    angle: test.direction,
+                    points: test.curve.distance.iter().zip(&test.curve.aspect_ratio).map(|(&d, &r)| [d, r]).collect(),
+                })
+                .collect();
             let size = fabric.bending[0].specimen;
-            let test = PearLoop { length: size.length, width: size.width, edge: EDGE * size.width, ..PearLoop::default() };
+            let test =
+                PearLoop { length: size.length, width: size.width, edge: EDGE * size.width, ..PearLoop::default() };
             let fit = fit_bending(&curves, &card, &test, settings.least_noise)?;
             open.extend(fit.undetermined().iter().map(|name| format!("{name} is not determined by these tests")));
             Some(fit)

@@ -96,7 +96,11 @@ fn what_is_wrong_is_said_where_it_stands() {
         ("\"30 deg\"", "\"400 deg\"", "\"400 deg\" is no direction"),
         ("title", "titel", "unknown key `titel`"),
         ("scene = \"jersey.toml\"", "", "one tile or one scene"),
-        ("file = \"warp.csv\"", "file = \"warp.csv\"\ncolumns = { force = \"Load\" }", "warp.csv: has no column \"Load\""),
+        (
+            "file = \"warp.csv\"",
+            "file = \"warp.csv\"\ncolumns = { force = \"Load\" }",
+            "warp.csv: has no column \"Load\"",
+        ),
         ("file = \"warp.csv\"", "file = \"warp.csv\"\nunits = { force = \"mm\" }", "no unit of it"),
         ("file = \"warp.csv\"", "file = \"warp.csv\"\nonly = { trial = \"3\" }", "to choose rows by"),
     ];

@@ -76,7 +76,12 @@ fn tell_reading(fabric: &FabricFile) -> Result<(), Failure> {
     for test in &fabric.stretch {
         let (stretch, force) = (test.curve.stretch.last().copied(), test.curve.force.last().copied());
         let (stretch, force) = (stretch.unwrap_or_default(), force.unwrap_or_default());
-        say!("  stretch along the {}: {} samples to {:.1} %, {force:.3} N", degrees(test.direction), test.curve.stretch.len(), 100.0 * stretch)?;
+        say!(
+            "  stretch along the {}: {} samples to {:.1} %, {force:.3} N",
+            degrees(test.direction),
+            test.curve.stretch.len(),
+            100.0 * stretch
+        )?;
         for line in &test.curve.read_as {
             say!("    {line}")?;
         }
@@ -156,7 +161,8 @@ fn curves_csv(fabric: &FabricFile, found: &FabricFit) -> String {
     );
     for (test, points) in fabric.stretch.iter().zip(&found.membrane.points) {
         for [target, point] in points {
-            let measured = if test.curve.compression.is_some() { format!("{}", target.compression) } else { String::new() };
+            let measured =
+                if test.curve.compression.is_some() { format!("{}", target.compression) } else { String::new() };
             let _ = writeln!(
                 text,
                 "{},{},{},{},{measured},{}",

@@ -64,7 +64,9 @@ impl Meaning {
             Self::Force => &["force", "load", "standard force", "kraft", "standardkraft", "last"],
             Self::LineForce => &["line force", "force per width", "line tension", "tension"],
             Self::Stretch => &["stretch", "strain", "tensile strain", "axial strain", "elongation", "dehnung"],
-            Self::Extension => &["extension", "displacement", "tensile displacement", "elongation", "crosshead", "weg", "standardweg"],
+            Self::Extension => {
+                &["extension", "displacement", "tensile displacement", "elongation", "crosshead", "weg", "standardweg"]
+            }
             Self::Compression => &["compression", "contraction", "transverse contraction", "orthogonal compression"],
             Self::TransverseStrain => &["transverse strain", "lateral strain", "width strain", "querdehnung"],
             Self::Width => &["width", "deformed width", "breite"],
@@ -152,7 +154,8 @@ pub(super) fn column(table: &Table, request: &Request, meaning: Meaning) -> Resu
     let (unit_size, unit) = match given {
         Some(unit) => {
             let size = kind.size(unit).ok_or_else(|| {
-                let what = format!("column {} is {} in \"{}\", no unit of it", index + 1, meaning.name(), shortened(unit));
+                let what =
+                    format!("column {} is {} in \"{}\", no unit of it", index + 1, meaning.name(), shortened(unit));
                 table.error(None, what, format!("known: {}", kind.known()))
             })?;
             (size, unit.as_str())

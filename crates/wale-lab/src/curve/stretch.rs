@@ -69,7 +69,11 @@ impl StretchCurve {
                 && s < before
             {
                 let what = format!("stretch falls from {before:.4} to {s:.4}");
-                return Err(table.error(line, what, "give the loading branch of one trial alone, or choose rows with `only`"));
+                return Err(table.error(
+                    line,
+                    what,
+                    "give the loading branch of one trial alone, or choose rows with `only`",
+                ));
             }
             if !(s > -1.0 && s < LARGEST_STRETCH) {
                 let what = format!("a stretch of {s:.3} cannot be");

@@ -32,7 +32,8 @@ impl Table {
     /// If it cannot be read, is larger than 64 MiB, no text in UTF-8, or no table.
     pub fn read(path: &Path) -> Result<Self, CurveError> {
         let file = path.display().to_string();
-        let error = |what: String, mend: &str| CurveError { file: file.clone(), line: None, what, mend: mend.to_owned() };
+        let error =
+            |what: String, mend: &str| CurveError { file: file.clone(), line: None, what, mend: mend.to_owned() };
         let mut bytes = Vec::new();
         File::open(path)
             .and_then(|opened| opened.take(LARGEST_FILE as u64 + 1).read_to_end(&mut bytes))
@@ -79,7 +80,8 @@ impl Table {
         let decimal_comma = delimiter != ',' && all.iter().flat_map(|(_, row)| row).any(|cell| has_decimal_comma(cell));
         let number = |cell: &String| number(cell, decimal_comma).is_some();
         // Instruments begin with a page about themselves: the head is the last row of words before rows of numbers.
-        let Some(first) = all.iter().position(|(_, row)| row.len() > 1 && row.iter().filter(|cell| number(cell)).count() > 1)
+        let Some(first) =
+            all.iter().position(|(_, row)| row.len() > 1 && row.iter().filter(|cell| number(cell)).count() > 1)
         else {
             return Err(error(None, "has no row with two numbers", "name a table of numbers, one row a sample"));
         };
@@ -88,7 +90,8 @@ impl Table {
         if width > MOST_COLUMNS {
             return Err(error(Some(rows[0].0), "has more than a thousand columns", "write one row a sample"));
         }
-        let mut above: Vec<Vec<String>> = all.into_iter().rev().map(|(_, row)| row).take_while(|row| row.len() > 1).take(2).collect();
+        let mut above: Vec<Vec<String>> =
+            all.into_iter().rev().map(|(_, row)| row).take_while(|row| row.len() > 1).take(2).collect();
         let units = above.first().filter(|row| above.len() > 1 && row.iter().all(|cell| is_unit_cell(cell))).is_some();
         let mut heads = if units {
             let units = above.remove(0);
@@ -137,7 +140,11 @@ impl Table {
         if value.is_finite() {
             Ok(value)
         } else {
-            Err(self.error(Some(*line), format!("{name} holds \"{}\"", shortened(cell)), "leave rows without a value out"))
+            Err(self.error(
+                Some(*line),
+                format!("{name} holds \"{}\"", shortened(cell)),
+                "leave rows without a value out",
+            ))
         }
     }
 
@@ -158,8 +165,7 @@ pub(super) fn shortened(text: &str) -> String {
 /// The delimiter by which most lines fall into the same number of parts; a decimal comma is none where another one is.
 fn delimiter_of(lines: &[(usize, &str)]) -> char {
     let score = |delimiter: char| {
-        let counts: Vec<usize> =
-            lines.iter().rev().take(50).map(|(_, line)| line.matches(delimiter).count()).collect();
+        let counts: Vec<usize> = lines.iter().rev().take(50).map(|(_, line)| line.matches(delimiter).count()).collect();
         let most = counts.iter().copied().filter(|&count| count > 0).max();
         most.map_or(0, |_| counts.iter().filter(|&&count| count > 0 && count == counts[0]).count())
     };
@@ -179,5 +185,7 @@ fn number(cell: &str, decimal_comma: bool) -> Option<f64> {
 /// Whether a cell of a second head is a unit, in brackets or alone, or nothing.
 fn is_unit_cell(cell: &str) -> bool {
     let bare = cell.trim_matches(['(', ')', '[', ']']);
-    cell.is_empty() || cell != bare || super::units::split_head(&format!("x ({bare})")).1.is_some_and(|unit| unit.len() <= 4)
+    cell.is_empty()
+        || cell != bare
+        || super::units::split_head(&format!("x ({bare})")).1.is_some_and(|unit| unit.len() <= 4)
 }

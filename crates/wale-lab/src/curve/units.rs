@@ -13,7 +13,8 @@ const FORCE: &[Unit] = &[
     ("lbf", 4.448_221_615),
 ];
 const LENGTH: &[Unit] = &[("mm", 1e-3), ("cm", 1e-2), ("m", 1.0), ("um", 1e-6), ("µm", 1e-6), ("in", 0.0254)];
-const RATIO: &[Unit] = &[("%", 1e-2), ("percent", 1e-2), ("1", 1.0), ("-", 1.0), ("–", 1.0), ("mm/mm", 1.0), ("m/m", 1.0)];
+const RATIO: &[Unit] =
+    &[("%", 1e-2), ("percent", 1e-2), ("1", 1.0), ("-", 1.0), ("–", 1.0), ("mm/mm", 1.0), ("m/m", 1.0)];
 const LINE_FORCE: &[Unit] = &[
     ("N/m", 1.0),
     ("N/mm", 1e3),

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use serde::de::value::{Error as PlainError, StrDeserializer};
 use serde::de::IntoDeserializer;
+use serde::de::value::{Error as PlainError, StrDeserializer};
 use wale::scene::dimensions::Angle;
 use wale::scene::units::{Any, Quantity};
 use wale::scene::{Scene, TextFile};
@@ -30,7 +30,9 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
     let whole: f64 = shares.iter().sum();
     if shares.len() == yarns.len() && !yarns.is_empty() && (whole - 1.0).abs() > ROUNDING || whole > 1.0 + ROUNDING {
         let what = format!("the shares of the yarns sum to {:.1} %", 100.0 * whole);
-        return Err(file.error("yarn.0.share", what, "shares are parts of the fabric's mass; all of them are 100 %").into());
+        return Err(file
+            .error("yarn.0.share", what, "shares are parts of the fabric's mass; all of them are 100 %")
+            .into());
     }
     let structure = text.structure.as_ref().map(|text| structure(text, file, &mut inputs)).transpose()?;
     let mut stretch = Vec::new();
@@ -123,7 +125,11 @@ fn direction(text: &str, key: &str, file: &TextFile) -> Result<f64, FabricFileEr
             let angle = Quantity::<Angle, Any>::deserialize(source).ok().map(|angle| angle.si().to_degrees());
             angle.filter(|angle| (-90.0..=180.0).contains(angle)).ok_or_else(|| {
                 let what = format!("\"{}\" is no direction", text.chars().take(40).collect::<String>());
-                file.error(&format!("{key}.direction"), what, "write \"weft\", \"bias\", \"warp\", or an angle such as \"30 deg\"")
+                file.error(
+                    &format!("{key}.direction"),
+                    what,
+                    "write \"weft\", \"bias\", \"warp\", or an angle such as \"30 deg\"",
+                )
             })?
         }
     };

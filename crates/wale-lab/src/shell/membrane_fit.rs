@@ -116,10 +116,7 @@ struct Answer {
 ///
 /// # Errors
 /// [`ShellError::Fit`] if there is nothing measured, or no start can be tested; [`ShellError::Number`] if a curve folds back.
-pub fn fit_membrane(
-    measured: &[MeasuredStretch],
-    settings: &MembraneFitSettings,
-) -> Result<MembraneFit, ShellError> {
+pub fn fit_membrane(measured: &[MeasuredStretch], settings: &MembraneFitSettings) -> Result<MembraneFit, ShellError> {
     let targets: Vec<Vec<StretchPoint>> =
         measured.iter().map(|one| one.curve.targets(settings.targets)).collect::<Result<_, _>>()?;
     // Each target with whether its compression was measured.
@@ -221,9 +218,11 @@ fn starts(
     // The curve nearest to a direction stands in for one that is missing.
     let modulus = |angle: f64| {
         let away = |k: &usize| (measured[*k].curve.angle - angle).abs();
-        let nearest = (0..measured.len()).filter(|&k| !targets[k].is_empty()).min_by(|a, b| away(a).total_cmp(&away(b)));
+        let nearest =
+            (0..measured.len()).filter(|&k| !targets[k].is_empty()).min_by(|a, b| away(a).total_cmp(&away(b)));
         let points = nearest.map_or(&[][..], |k| &targets[k][..]);
-        let width = nearest.map_or(1.0, |k| if let StretchTest::Clamped(test) = &measured[k].test { test.width } else { 1.0 });
+        let width =
+            nearest.map_or(1.0, |k| if let StretchTest::Clamped(test) = &measured[k].test { test.width } else { 1.0 });
         let sum = |of: fn(&StretchPoint) -> f64| points.iter().map(of).sum::<f64>();
         (sum(|p| p.force) / (width * sum(|p| p.stretch))).abs().clamp(1e-6, 1e9)
     };
@@ -262,9 +261,8 @@ mod tests {
 
     #[test]
     fn uniform_curves_of_a_known_fabric_are_recovered() {
-        let curves: Vec<_> = [(0.0, 1.2), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)]
-            .map(|(angle, largest)| uniform(angle, largest))
-            .into();
+        let curves: Vec<_> =
+            [(0.0, 1.2), (FRAC_PI_4, 0.8), (FRAC_PI_2, 0.5)].map(|(angle, largest)| uniform(angle, largest)).into();
         let fit = fit_membrane(&curves, &MembraneFitSettings::default()).unwrap();
         assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
         assert!((fit.stiffness.yy / TRUTH.yy - 1.0).abs() < 0.05, "{:?}", fit.stiffness);
