@@ -209,11 +209,9 @@ impl TileSystem {
     }
 
     /// The elements, moved out while the rest of the system is written to.
-    #[expect(clippy::type_complexity)]
     fn take(&mut self) -> (Kind<RodStretch, 2>, Kind<RodBending, 3>, Kind<RodContact, 4>) {
-        let none = || std::iter::empty();
         (
-            std::mem::replace(&mut self.stretch, Kind::new(none())),
+            std::mem::replace(&mut self.stretch, Kind::new(std::iter::empty())),
             std::mem::replace(&mut self.bending, Kind::new(std::iter::empty())),
             std::mem::replace(&mut self.contact, Kind::new(std::iter::empty())),
         )
