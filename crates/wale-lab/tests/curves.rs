@@ -65,6 +65,20 @@ fn columns_units_and_rows_can_be_said() {
 }
 
 #[test]
+fn what_is_asked_for_goes_before_what_is_found() {
+    let text = "strain,pins,force (N),tension (N/m)\n0,0,0,0\n0.1,0.2,1,50\n0.2,0.3,2,100\n";
+    let found = stretch(text, &Request::default()).unwrap();
+    assert_near(&found.force, &[0.0, 1.0, 2.0]);
+    let columns = BTreeMap::from([
+        (Meaning::LineForce, ColumnName::Head("tension".to_owned())),
+        (Meaning::Stretch, ColumnName::Head("pins".to_owned())),
+    ]);
+    let asked = stretch(text, &Request { columns, ..Request::default() }).unwrap();
+    assert_near(&asked.stretch, &[0.0, 0.2, 0.3]);
+    assert_near(&asked.force, &[0.0, 3.0, 6.0]);
+}
+
+#[test]
 fn a_loop_has_distances_and_ratios() {
     let table = Table::from_text("distance (mm);h/p\n3;1,9\n34;0,8\n", "loop.csv").unwrap();
     let curve = LoopCurve::of(&table, &Request::default()).unwrap();

@@ -36,22 +36,22 @@ impl StretchCurve {
     /// # Errors
     /// If columns are missing, a cell is no finite number, stretch decreases, or there are fewer than three samples.
     pub fn of(table: &Table, request: &Request, specimen: Specimen) -> Result<Self, CurveError> {
-        let of = |meaning| column(table, request, meaning);
-        let (stretch, by_length) = match of(Meaning::Stretch)? {
-            Some(column) => (column, false),
-            None => (needed(table, of(Meaning::Extension)?, "stretch or extension")?, true),
-        };
-        let (force, by_width) = match of(Meaning::Force)? {
-            Some(column) => (column, false),
-            None => (needed(table, of(Meaning::LineForce)?, "force or line_force")?, true),
-        };
-        let across = [Meaning::Compression, Meaning::TransverseStrain, Meaning::Width];
-        let mut transverse = None;
-        for meaning in across {
-            if transverse.is_none() {
-                transverse = of(meaning)?.map(|column| (meaning, column));
+        // What was asked for goes before what is found.
+        let first_of = |mut meanings: Vec<Meaning>| -> Result<Option<(Meaning, Column)>, CurveError> {
+            meanings.sort_by_key(|meaning| !request.columns.contains_key(meaning));
+            for meaning in meanings {
+                if let Some(column) = column(table, request, meaning)? {
+                    return Ok(Some((meaning, column)));
+                }
             }
-        }
+            Ok(None)
+        };
+        let along = first_of(vec![Meaning::Stretch, Meaning::Extension])?;
+        let (along, stretch) = needed(table, along, "stretch or extension")?;
+        let pull = first_of(vec![Meaning::Force, Meaning::LineForce])?;
+        let (pull, force) = needed(table, pull, "force or line_force")?;
+        let transverse = first_of(vec![Meaning::Compression, Meaning::TransverseStrain, Meaning::Width])?;
+        let (by_length, by_width) = (along == Meaning::Extension, pull == Meaning::LineForce);
         let mut curve = Self {
             stretch: Vec::new(),
             force: Vec::new(),
@@ -108,7 +108,7 @@ impl StretchCurve {
     }
 }
 
-pub(super) fn needed(table: &Table, found: Option<Column>, what: &str) -> Result<Column, CurveError> {
+pub(super) fn needed<T>(table: &Table, found: Option<T>, what: &str) -> Result<T, CurveError> {
     found.ok_or_else(|| {
         let heads: Vec<String> = table.heads().iter().filter(|head| !head.is_empty()).cloned().collect();
         let mend = if heads.is_empty() {
