@@ -1,5 +1,5 @@
 //! The fabric lab: textile tests on thin shells and on periodic yarn tiles, and models fitted to what was measured
-//! [Sperl2022].
+//! \[Sperl2022\].
 
 pub mod card_file;
 pub mod curve;

@@ -45,7 +45,7 @@ pub enum TileFault {
         /// What it is.
         value: f64,
     },
-    /// There are no vertices, or more than [`MOST_VERTICES`], or lists of different lengths.
+    /// There are no vertices, or more than `MOST_VERTICES`, or lists of different lengths.
     #[error("{found} {what} where {wanted} are asked for")]
     Count {
         /// Of what.

@@ -6,7 +6,8 @@ use wale_numerics::vector;
 use super::few::FewNodes;
 use super::linear::{Coupling, Linear, LinearError, LinearReport, LinearSettings};
 use super::remaining::{Left, MOST_FAR, far_nodes, moves};
-use super::system::{System, Workspace};
+use super::system::System;
+use super::workspace::Workspace;
 
 /// How a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]

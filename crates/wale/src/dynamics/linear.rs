@@ -13,7 +13,8 @@ use wale_numerics::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 use wale_numerics::vector;
 
 use super::selected::Selected;
-use super::system::{System, Workspace};
+use super::system::System;
+use super::workspace::Workspace;
 use crate::fabric::coordinates::BLOCK;
 use crate::model::LinearSolver;
 

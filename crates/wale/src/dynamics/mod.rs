@@ -18,5 +18,6 @@ pub mod terms;
 pub mod tile_equilibrium;
 pub mod tile_sensitivity;
 mod tile_system;
+pub mod workspace;
 
 pub use state::State;

@@ -9,6 +9,7 @@ use wale_numerics::block_pattern::BlockPattern;
 
 use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
+use super::workspace::Workspace;
 use crate::contact::{Compression, Nearby, Strands};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, LegContact, Load, ObstacleContact, ParallelSpring,
@@ -74,20 +75,6 @@ pub struct System {
 
 /// Number of terms.
 pub(super) const TERMS: usize = 17;
-
-/// Scratch memory of sums.
-#[derive(Default)]
-pub struct Workspace {
-    chunks: Vec<ChunkWork>,
-}
-
-#[derive(Default)]
-struct ChunkWork {
-    chunk: usize,
-    gradient: Vec<f64>,
-    energy: f64,
-    by_kind: Vec<(&'static str, f64)>,
-}
 
 /// Name and energy \[J\] of every kind, in the order of reports.
 pub type Energies = [(&'static str, f64); KINDS.len()];
@@ -423,29 +410,5 @@ fn add_to_kind(sums: &mut Vec<(&'static str, f64)>, kind: &'static str, energy: 
     match sums.iter_mut().find(|(name, _)| *name == kind) {
         Some((_, sum)) => *sum += energy,
         None => sums.push((kind, energy)),
-    }
-}
-
-impl Workspace {
-    fn prepare(&mut self, chunks: &Chunks) {
-        if self.chunks.len() != chunks.count() {
-            self.chunks = (0..chunks.count())
-                .map(|chunk| ChunkWork {
-                    chunk,
-                    gradient: vec![0.0; BLOCK * chunks.rows(chunk).len()],
-                    energy: 0.0,
-                    by_kind: Vec::with_capacity(KINDS.len()),
-                })
-                .collect();
-        }
-    }
-
-    /// Copies the rows' gradients together; the energies are added in the order of chunks.
-    fn collect(&self, chunks: &Chunks, gradient: &mut [f64]) -> f64 {
-        for work in &self.chunks {
-            let rows = chunks.rows(work.chunk);
-            gradient[BLOCK * rows.start..BLOCK * rows.end].copy_from_slice(&work.gradient);
-        }
-        self.chunks.iter().map(|work| work.energy).sum()
     }
 }

@@ -14,7 +14,7 @@ pub enum ContactReading {
     SquareOfBarrier,
     /// Without the square, `f(x)`: it sets in with `(1 − x)³`.
     Barrier,
-    /// The square inside, `f(x²)`: the barrier of squared distances of [Li2020].
+    /// The square inside, `f(x²)`: the barrier of squared distances of \[Li2020\].
     BarrierOfSquare,
 }
 
