@@ -6,7 +6,7 @@ use crate::model::{FabricCard, KnitCard, Network, Yarns};
 use crate::pattern::{Chart, Structure, knit};
 
 /// Most loops of a repeat that is relaxed for its loop shapes.
-pub const MOST_TILE_LOOPS: usize = 400;
+pub const MOST_TILE_LOOPS: usize = 100;
 /// Starts from which a repeat is relaxed; the one of lowest energy is taken, because equilibria are not unique.
 const STARTS: usize = 3;
 /// Loops of a repeat above which one start must do: it takes seconds, and its patches average over what starts differ in.
