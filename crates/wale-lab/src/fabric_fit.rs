@@ -11,7 +11,7 @@ use crate::shell::stretch_curve::{StretchCurve, StretchPoint};
 use crate::shell::{ClampedStretch, PearLoop, ShellCard, ShellError};
 
 /// Edge of the mesh over the smaller side of a specimen \[–\].
-const EDGE: f64 = 1.0 / 15.0;
+const EDGE: f64 = 0.1;
 
 /// What was fitted.
 #[derive(Clone, Debug)]
@@ -35,6 +35,14 @@ pub enum FabricFitError {
     /// The shell could not be fitted.
     #[error(transparent)]
     Shell(#[from] ShellError),
+}
+
+/// A clamped test as if its swatch were a uniform strip.
+fn strip(measured: &MeasuredStretch, test: &crate::fabric_file::StretchTest) -> MeasuredStretch {
+    let mut one = measured.clone();
+    one.test = StretchTest::Uniform;
+    one.curve.points.iter_mut().for_each(|point| point.force /= test.specimen.width);
+    one
 }
 
 /// Fits a thin shell to the tests of a fabric.
@@ -73,7 +81,11 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
             }
         })
         .collect();
-    let membrane = fit_membrane(&measured, settings)?;
+    // A swatch is nearly a uniform strip, which costs nothing: from the best of many starts with strips, one is enough with swatches.
+    let strips: Vec<MeasuredStretch> =
+        measured.iter().zip(&fabric.stretch).map(|(one, test)| strip(one, test)).collect();
+    let near = fit_membrane(&strips, settings)?;
+    let membrane = fit_membrane(&measured, &MembraneFitSettings { begin: Some(near.stiffness), ..*settings })?;
     open.extend(membrane.undetermined().iter().map(|name| format!("{name} is not determined by these tests")));
     let bending = match fabric.areal_mass {
         _ if fabric.bending.is_empty() => None,
