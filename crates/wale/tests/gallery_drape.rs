@@ -33,15 +33,14 @@ fn six_fabrics_of_one_yarn_drape_differently() {
         assert!(lowest < 15e-3, "{name}: {lowest}");
         assert!(played.speed < 0.03, "{name}: {}", played.speed);
         parts.push(draped / lying);
-        // No yarn passes through another; what feather and fan does is told in docs/topics/topology.md.
-        if name == "feather-and-fan" {
-            continue;
+        // Without holes, no yarn passes through another; what lace does is told in docs/topics/topology.md.
+        if ["garter", "rib", "plain-weave"].contains(&name) {
+            let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
+            let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
+            let mut passages = Passages::of(network);
+            drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
+            assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
         }
-        let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
-        let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
-        let mut passages = Passages::of(network);
-        drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
-        assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
     }
     // Knits give way in every direction, and a weave of the same yarn does not: it keeps the largest part of its shadow.
     let weave = parts[5];
