@@ -27,7 +27,15 @@ impl Model {
     /// The bed is that of the proportions' contacts.
     pub fn new(proportions: LoopProportions) -> Self {
         let bed = TileSettings::of(&proportions.card(&yarn(), 1.0)).bed;
-        let settings = TileSettings { bed, noise: 0.01, relief: 0.0, seed: 1, max_iterations: 1500, tolerance: 1e-4 };
+        let settings = TileSettings {
+            bed,
+            noise: 0.01,
+            relief: 0.0,
+            shorten: true,
+            seed: 1,
+            max_iterations: 1500,
+            tolerance: 1e-4,
+        };
         Self { proportions, settings }
     }
 

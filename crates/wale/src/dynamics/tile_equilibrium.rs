@@ -18,6 +18,9 @@ pub struct TileSettings {
     pub noise: f64,
     /// How far knit loops are laid in front of purl loops at first, in loop lengths \[–\]: a rib folds, and may lie flat too.
     pub relief: f64,
+    /// Whether a step that goes too far is shortened before the second derivatives are shifted: large repeats need half the iterations
+    /// so, and small ones with several equilibria may find another.
+    pub shorten: bool,
     /// Seed of that displacement.
     pub seed: u64,
     /// Most Newton iterations.
@@ -41,7 +44,15 @@ impl TileSettings {
 
 impl Default for TileSettings {
     fn default() -> Self {
-        Self { bed: Self::POINT_BED, noise: 0.01, relief: 0.0, seed: 1, max_iterations: 300, tolerance: 1e-7 }
+        Self {
+            bed: Self::POINT_BED,
+            noise: 0.01,
+            relief: 0.0,
+            shorten: false,
+            seed: 1,
+            max_iterations: 300,
+            tolerance: 1e-7,
+        }
     }
 }
 
@@ -260,7 +271,7 @@ impl Descent<'_> {
             // Close to rest the energy no longer resolves the step: trust Newton there.
             let resolved = predicted > 1e-12 * self.energy.abs();
             let trust = if resolved { gained / predicted } else { 1.0 };
-            if (trust.is_nan() || trust < LEAST_TRUST) && part > SHORTEST_PART * longest {
+            if self.settings.shorten && (trust.is_nan() || trust < LEAST_TRUST) && part > SHORTEST_PART * longest {
                 part *= SHORTER;
                 continue;
             }
