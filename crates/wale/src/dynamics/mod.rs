@@ -11,13 +11,11 @@ mod scatter;
 mod selected;
 pub mod state;
 pub mod step;
-mod strands;
 mod surroundings;
 pub mod system;
 pub mod terms;
 pub mod tile_equilibrium;
 pub mod tile_sensitivity;
 mod tile_system;
-pub mod workspace;
 
 pub use state::State;

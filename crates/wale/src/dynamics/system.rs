@@ -9,11 +9,10 @@ use wale_numerics::block_pattern::BlockPattern;
 
 use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
-use super::workspace::Workspace;
-use crate::contact::{Compression, Nearby, Strands};
+use crate::contact::{Compression, Nearby};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, LegContact, Load, ObstacleContact, ParallelSpring,
-    Rate, SelfContact, Shear, Spacing, StitchLength, StrandContact, Stretch, Thick, Wrapping,
+    Rate, SelfContact, Shear, Spacing, StitchLength, Stretch, Thick, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -54,7 +53,6 @@ pub struct System {
     pub(super) parallel: Term<ParallelSpring, 2>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
     pub(super) self_contacts: Term<SelfContact, 6>,
-    pub(super) strand_contacts: Term<StrandContact, 12>,
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
     pub(super) compression: Compression,
@@ -68,19 +66,32 @@ pub struct System {
     /// Where the nodes lie in the layout \[m\], and who has come near whom since.
     pub(super) layout: Vec<DVec3>,
     pub(super) nearby: Nearby,
-    pub(super) strands: Strands,
     /// Planar places of blocks for a coarse space: columns and rows of the chart.
     pub(super) chart_place: Vec<[f64; 2]>,
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 17;
+pub(super) const TERMS: usize = 16;
+
+/// Scratch memory of sums.
+#[derive(Default)]
+pub struct Workspace {
+    chunks: Vec<ChunkWork>,
+}
+
+#[derive(Default)]
+struct ChunkWork {
+    chunk: usize,
+    gradient: Vec<f64>,
+    energy: f64,
+    by_kind: Vec<(&'static str, f64)>,
+}
 
 /// Name and energy \[J\] of every kind, in the order of reports.
 pub type Energies = [(&'static str, f64); KINDS.len()];
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 16] = [
+const KINDS: [&str; 15] = [
     Stretch::NAME,
     Bending::NAME,
     LegContact::NAME,
@@ -96,7 +107,6 @@ const KINDS: [&str; 16] = [
     Rate::NAME,
     ObstacleContact::NAME,
     SelfContact::NAME,
-    StrandContact::NAME,
 ];
 
 impl System {
@@ -195,9 +205,7 @@ impl System {
             parallel: Term::new(parallel, &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             self_contacts: Term::new(Elements::default(), &chunks),
-            strand_contacts: Term::new(Elements::default(), &chunks),
             nearby: Nearby::default(),
-            strands: Strands::default(),
             layout: network.position.clone(),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
@@ -268,7 +276,6 @@ impl System {
             &self.parallel,
             &self.obstacles,
             &self.self_contacts,
-            &self.strand_contacts,
             &self.loads,
             &self.bed,
         ]
@@ -339,7 +346,7 @@ impl System {
     pub fn longest_step(&self, q: &[f64], direction: &[f64]) -> f64 {
         let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
         let longest = segments.map(|stencil| longest_step(stencil, q, |dof| direction[dof]));
-        longest.reduce(|| f64::INFINITY, f64::min).min(self.longest_way(q, direction))
+        longest.reduce(|| f64::INFINITY, f64::min).min(1.0)
     }
 
     /// As [`System::longest_step`], for some segments.
@@ -410,5 +417,29 @@ fn add_to_kind(sums: &mut Vec<(&'static str, f64)>, kind: &'static str, energy: 
     match sums.iter_mut().find(|(name, _)| *name == kind) {
         Some((_, sum)) => *sum += energy,
         None => sums.push((kind, energy)),
+    }
+}
+
+impl Workspace {
+    fn prepare(&mut self, chunks: &Chunks) {
+        if self.chunks.len() != chunks.count() {
+            self.chunks = (0..chunks.count())
+                .map(|chunk| ChunkWork {
+                    chunk,
+                    gradient: vec![0.0; BLOCK * chunks.rows(chunk).len()],
+                    energy: 0.0,
+                    by_kind: Vec::with_capacity(KINDS.len()),
+                })
+                .collect();
+        }
+    }
+
+    /// Copies the rows' gradients together; the energies are added in the order of chunks.
+    fn collect(&self, chunks: &Chunks, gradient: &mut [f64]) -> f64 {
+        for work in &self.chunks {
+            let rows = chunks.rows(work.chunk);
+            gradient[BLOCK * rows.start..BLOCK * rows.end].copy_from_slice(&work.gradient);
+        }
+        self.chunks.iter().map(|work| work.energy).sum()
     }
 }
