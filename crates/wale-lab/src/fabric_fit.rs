@@ -100,14 +100,17 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
                 .bending
                 .iter()
                 .map(|test| PearCurve {
-                    angle: test.direction,
+                    test: PearLoop {
+                        length: test.specimen.length,
+                        width: test.specimen.width,
+                        angle: test.direction,
+                        edge: EDGE * test.specimen.length.min(test.specimen.width),
+                        ..PearLoop::default()
+                    },
                     points: test.curve.distance.iter().zip(&test.curve.aspect_ratio).map(|(&d, &r)| [d, r]).collect(),
                 })
                 .collect();
-            let size = fabric.bending[0].specimen;
-            let test =
-                PearLoop { length: size.length, width: size.width, edge: EDGE * size.width, ..PearLoop::default() };
-            let fit = fit_bending(&curves, &card, &test, settings.least_noise)?;
+            let fit = fit_bending(&curves, &card, settings.least_noise)?;
             open.extend(fit.undetermined().iter().map(|name| format!("{name} is not determined by these tests")));
             Some(fit)
         }

@@ -44,17 +44,18 @@ fn pear_loops_of_a_known_fabric_give_its_bending_back() {
     let card = ShellCard { membrane, bending, areal_mass: 0.2 };
     let test = PearLoop { edge: 0.008, width: 0.024, ..PearLoop::default() };
     let curve = |angle: f64| {
-        let points = PearLoop { angle, ..test }.run(&card, &distances()).unwrap();
-        PearCurve { angle, points: points.iter().map(|point| [point.distance, point.aspect]).collect() }
+        let test = PearLoop { angle, ..test };
+        let points = test.run(&card, &distances()).unwrap();
+        PearCurve { test, points: points.iter().map(|point| [point.distance, point.aspect]).collect() }
     };
     let guess = ShellCard { bending: BendingStiffness::isotropic(1e-9), ..card };
     let curves = [0.0, FRAC_PI_4, FRAC_PI_2].map(curve);
-    let fit = fit_bending(&curves, &guess, &test, 0.01).unwrap();
+    let fit = fit_bending(&curves, &guess, 0.01).unwrap();
     assert!(fit.aspect_error < 1e-4, "{}", fit.aspect_error);
     for (found, truth) in fit.stiffness.to_array().iter().zip(bending.to_array()) {
         assert!((found / truth - 1.0).abs() < 0.02, "{:?}", fit.stiffness);
     }
-    let fit = fit_bending(&curves[..1], &guess, &test, 0.01).unwrap();
+    let fit = fit_bending(&curves[..1], &guess, 0.01).unwrap();
     assert!((fit.stiffness.weft / bending.weft - 1.0).abs() < 0.02, "{:?}", fit.stiffness);
     assert_eq!(fit.undetermined(), ["k_θ,bias", "k_θ,warp"]);
 }

@@ -110,36 +110,10 @@ pub fn hessian_error<const N: usize>(
     worst
 }
 
-/// Smallest eigenvalue of a symmetric matrix over its largest in size, by Jacobi rotations.
+/// Smallest eigenvalue of a symmetric matrix over its largest in size.
 #[must_use]
 pub fn relative_smallest_eigenvalue<const N: usize>(matrix: &[[f64; N]; N]) -> f64 {
-    let mut a = *matrix;
-    for _ in 0..60 {
-        let mut off = 0.0;
-        for p in 0..N {
-            for q in p + 1..N {
-                off += a[p][q] * a[p][q];
-                if a[p][q].abs() < 1e-300 {
-                    continue;
-                }
-                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-                let c = 1.0 / (t * t + 1.0).sqrt();
-                let s = t * c;
-                for k in 0..N {
-                    let (x, y) = (a[k][p], a[k][q]);
-                    (a[k][p], a[k][q]) = (c * x - s * y, s * x + c * y);
-                }
-                for k in 0..N {
-                    let (x, y) = (a[p][k], a[q][k]);
-                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
-                }
-            }
-        }
-        if off == 0.0 {
-            break;
-        }
-    }
-    let largest = (0..N).map(|i| a[i][i].abs()).fold(0.0, f64::max);
-    (0..N).map(|i| a[i][i]).fold(f64::INFINITY, f64::min) / largest.max(f64::MIN_POSITIVE)
+    let (values, _) = crate::eigen::symmetric_eigen(matrix);
+    let largest = values.iter().fold(0.0f64, |m, value| m.max(value.abs()));
+    values.iter().copied().fold(f64::INFINITY, f64::min) / largest.max(f64::MIN_POSITIVE)
 }

@@ -11,8 +11,8 @@ use super::pear_loop::{PearLoop, PearPoint};
 /// Pear loops of a strip along one direction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PearCurve {
-    /// Direction of the strip from the weft (0) towards the warp (π/2) \[rad\].
-    pub angle: f64,
+    /// How they were measured: the strip, its direction, its clamps.
+    pub test: PearLoop,
     /// Distance between the clamps \[m\], and height over width of the loop \[–\].
     pub points: Vec<[f64; 2]>,
 }
@@ -51,27 +51,21 @@ const BOUNDS: [f64; 2] = [0.002, 0.3];
 /// Most evaluations a start.
 const MOST_EVALUATIONS: usize = 40;
 
-/// Fits the three bending stiffnesses to measured loops, of whichever directions there are. `card` says the rest; `test` how
-/// they were measured, save for the direction.
+/// Fits the three bending stiffnesses to measured loops, of whichever directions there are. `card` says the rest.
 ///
 /// Minimises `Σ (r − r_i)²` by Levenberg–Marquardt in the logarithms with exact derivatives through equilibrium. Loops know the
 /// stiffness only by what their weight does to them; without weight there is nothing to fit.
 ///
 /// # Errors
 /// [`ShellError::Fit`] if nothing was measured or no start can be tested, [`ShellError::Number`] without weight.
-pub fn fit_bending(
-    curves: &[PearCurve],
-    card: &ShellCard,
-    test: &PearLoop,
-    least_noise: f64,
-) -> Result<BendingFit, ShellError> {
+pub fn fit_bending(curves: &[PearCurve], card: &ShellCard, least_noise: f64) -> Result<BendingFit, ShellError> {
     let measured: Vec<f64> = curves.iter().flat_map(|curve| curve.points.iter().map(|[_, r]| *r)).collect();
     let mean = measured.iter().map(|r| r.abs()).sum::<f64>() / measured.len() as f64;
     // Written so that a NaN fails.
     if !(mean > 0.0 && mean < f64::INFINITY) {
         return Err(ShellError::Fit("no loop was measured".into()));
     }
-    let gravity = test.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+    let gravity = curves[0].test.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
     let weight = card.areal_mass * gravity;
     positive("weight an area", weight)?;
     let stiffness = |length: f64| 0.5 * weight * length.powi(3);
@@ -80,7 +74,7 @@ pub fn fit_bending(
         let card = ShellCard { bending: BendingStiffness::from_array(*parameters), ..*card };
         let of = |curve: &PearCurve| {
             let distances: Vec<f64> = curve.points.iter().map(|[distance, _]| *distance).collect();
-            PearLoop { angle: curve.angle, ..*test }.run(&card, &distances).ok()
+            curve.test.run(&card, &distances).ok()
         };
         curves.par_iter().map(of).collect()
     };

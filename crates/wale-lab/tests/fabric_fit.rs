@@ -1,0 +1,57 @@
+//! A fabric file with the tests of a known shell gives that shell back, each test with its own specimen.
+
+use std::fmt::Write;
+use std::fs;
+
+use wale::energy::{BendingStiffness, MembraneStiffness};
+use wale_lab::fabric_file::FabricFile;
+use wale_lab::fabric_fit::fit_fabric;
+use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::{ClampedStretch, PearLoop, ShellCard};
+
+#[test]
+fn specimens_of_different_size_are_fitted_as_what_they_are() {
+    let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 600.0, ss: 60.0, n1: 2.0, n2: 4.0 };
+    let bending = BendingStiffness { weft: 1.5e-6, bias: 2.5e-6, warp: 5e-6 };
+    let card = ShellCard { membrane, bending, areal_mass: 0.2 };
+    let folder = tempfile::tempdir().unwrap();
+    let mut fabric = String::from("schema = 1\nareal_mass = \"200 g/m^2\"\n");
+    let mut add = |kind: &str, degrees: f64, [length, width]: [f64; 2], table: &str| {
+        let name = format!("{kind}-{degrees}.csv");
+        fs::write(folder.path().join(&name), table).unwrap();
+        let _ = write!(
+            fabric,
+            "[[{kind}]]\ndirection = \"{degrees} deg\"\nfile = \"{name}\"\nlength = {length:?}\nwidth = {width:?}\n"
+        );
+    };
+    for (degrees, size) in [(0.0, [0.1_f64, 0.06]), (45.0, [0.08, 0.05]), (90.0, [0.06, 0.08])] {
+        let [length, width] = size;
+        let edge = 0.1 * length.min(width);
+        let test = ClampedStretch { length, width, edge, angle: f64::to_radians(degrees), ..ClampedStretch::default() };
+        let mut table = String::from("stretch,force (N),compression\n0,0,0\n");
+        for point in test.run(&card, &[0.05, 0.1, 0.15, 0.2, 0.25, 0.3]).unwrap() {
+            let _ = writeln!(table, "{},{},{}", point.stretch, point.force, point.compression);
+        }
+        add("stretch", degrees, size, &table);
+    }
+    for (degrees, size) in [(0.0, [0.1, 0.03]), (90.0, [0.12, 0.04])] {
+        let [length, width] = size;
+        let test =
+            PearLoop { length, width, edge: 0.1 * width, angle: f64::to_radians(degrees), ..PearLoop::default() };
+        let mut table = String::from("clamp distance (m),aspect ratio\n");
+        for point in test.run(&card, &[0.01, 0.02, 0.03]).unwrap() {
+            let _ = writeln!(table, "{},{}", point.distance, point.aspect);
+        }
+        add("bending", degrees, size, &table);
+    }
+    let path = folder.path().join("fabric.toml");
+    fs::write(&path, fabric).unwrap();
+    let found = fit_fabric(&FabricFile::read(&path).unwrap(), &MembraneFitSettings::default()).unwrap();
+    assert!(found.membrane.force_error < 2e-3 && found.membrane.compression_error < 5e-3, "{:?}", found.membrane);
+    let [k, truth] = [found.membrane.stiffness, membrane].map(|k| [k.xx, k.yy, k.ss]);
+    assert!(k.iter().zip(truth).all(|(k, truth)| (k / truth - 1.0).abs() < 0.05), "{k:?}");
+    let fitted = found.bending.unwrap().stiffness;
+    assert!((fitted.weft / bending.weft - 1.0).abs() < 0.03, "{fitted:?}");
+    assert!((fitted.warp / bending.warp - 1.0).abs() < 0.03, "{fitted:?}");
+    assert!(found.open.iter().any(|open| open.contains("k_θ,bias")), "{:?}", found.open);
+}
