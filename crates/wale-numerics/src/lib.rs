@@ -17,4 +17,5 @@ pub mod scalar;
 mod small_block;
 pub mod sparse_cholesky;
 pub mod triad;
+pub mod trust;
 pub mod vector;

@@ -1,5 +1,7 @@
 //! How a shell comes to rest.
 
+use wale_numerics::trust::{Trust, TrustRule, is_enough};
+
 use super::error::ShellError;
 use super::system::ShellSystem;
 
@@ -29,18 +31,14 @@ pub struct RestReport {
     pub energy: f64,
 }
 
-/// Least multiple of the identity that is not none, and the largest, in units of the stretch stiffness.
-const LEAST_SHIFT: f64 = 1e-8;
+/// Largest shift, in units of the stretch stiffness.
 const LARGEST_SHIFT: f64 = 1e6;
-/// Least convexity that is not none, and the first after none.
-const LEAST_CONVEXITY: f64 = 0.02;
-const SOME_CONVEXITY: f64 = 0.125;
+const RULE: TrustRule = TrustRule { least: 1e-8, doubted: 1e-7, refused: 1e-7, growth: 10.0, fall: 0.1 };
 /// Largest move of a coordinate in a step, in edges of the mesh.
 const LONGEST_MOVE: f64 = 4.0;
 
-/// Moves the unknowns of `q` to where no force is left on them, by Newton's method within a region that it trusts: where the
-/// exact second derivatives are not positive definite, ones nearer to convex take their place; and a multiple of the identity
-/// grows where they do not tell what the energy does.
+/// Moves the unknowns of `q` to where no force is left on them, by Newton's method within a region that it trusts
+/// ([`wale_numerics::trust`]).
 ///
 /// # Errors
 /// [`ShellError::NotAtRest`], with `q` where the last iteration left it; [`ShellError::Cholesky`] where something is not finite.
@@ -50,41 +48,28 @@ pub fn come_to_rest(
     settings: &RestSettings,
 ) -> Result<RestReport, ShellError> {
     let unit = system.stiffness();
-    let (mut shift, mut convexity) = (0.0f64, 0.0f64);
-    let mut energy = system.linearise(q, convexity);
+    let mut trust = Trust::new(RULE, 0.0, 0.0);
+    let mut energy = system.linearise(q, trust.convexity);
     let mut iterations = 0;
     while iterations < settings.max_iterations && system.residual() > settings.tolerance {
-        if shift > LARGEST_SHIFT {
+        if trust.shift > LARGEST_SHIFT {
             break;
         }
-        let used = if shift < LEAST_SHIFT { 0.0 } else { shift };
-        let Some(step) = system.step(used * unit)? else {
+        let Some(step) = system.step(trust.used_shift() * unit)? else {
             iterations += 1;
-            if convexity < 1.0 {
-                convexity = (2.0 * convexity).clamp(SOME_CONVEXITY, 1.0);
-                energy = system.linearise(q, convexity);
-            } else {
-                shift = (10.0 * shift).max(10.0 * LEAST_SHIFT);
+            if trust.refuse() {
+                energy = system.linearise(q, trust.convexity);
             }
             continue;
         };
         let part = system.longest_step(q, &step.direction, LONGEST_MOVE * system.edge());
         let trial: Vec<f64> = q.iter().zip(&step.direction).map(|(q, d)| q + part * d).collect();
-        let predicted = -part * step.slope - 0.5 * part * part * step.curvature;
-        let gained = energy - system.energy(&trial);
-        // Close to rest the energy no longer resolves the step: trust Newton there.
-        let resolved = predicted > 1e-12 * energy.abs();
-        let trust = if resolved { gained / predicted } else { 1.0 };
-        if trust > 0.75 && part > 0.9 {
-            shift *= 0.1;
-            convexity = if convexity > LEAST_CONVEXITY { 0.5 * convexity } else { 0.0 };
-        } else if trust.is_nan() || trust < 0.25 {
-            shift = (10.0 * shift).max(10.0 * LEAST_SHIFT);
-        }
+        let share = step.foreseen.share(part, energy - system.energy(&trial), energy, 1e-12);
+        trust.judge(share, part, 0.0);
         iterations += 1;
-        if trust > 1e-3 {
+        if is_enough(share) {
             q.copy_from_slice(&trial);
-            energy = system.linearise(q, convexity);
+            energy = system.linearise(q, trust.convexity);
         }
     }
     let residual = system.residual();

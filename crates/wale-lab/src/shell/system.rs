@@ -9,6 +9,7 @@ use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::check::Local;
 use wale_numerics::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
+use wale_numerics::trust::Foreseen;
 
 use super::card::ShellCard;
 use super::error::ShellError;
@@ -212,7 +213,8 @@ impl ShellSystem {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
         self.factor.solve_in_place(&mut direction);
         let slope = dot(&direction, &self.gradient);
-        Ok(Some(ShellStep { curvature: -slope - shift * dot(&direction, &direction), slope, direction }))
+        let curvature = -slope - shift * dot(&direction, &direction);
+        Ok(Some(ShellStep { direction, foreseen: Foreseen { slope, curvature } }))
     }
 
     /// The largest part of a step, at most one, in which no triangle loses a tenth of what keeps its area from vanishing, and no
@@ -281,12 +283,10 @@ impl ShellSystem {
 /// A step by all slots.
 #[derive(Clone, Debug)]
 pub struct ShellStep {
-    /// Change of every slot \[m\].
+    /// Change of each slot \[m\].
     pub direction: Vec<f64>,
-    /// `gᵀd` \[J\].
-    pub slope: f64,
-    /// `dᵀHd` \[J\].
-    pub curvature: f64,
+    /// What it is foreseen to gain \[J\].
+    pub foreseen: Foreseen,
 }
 
 /// Where the derivatives of elements are added up.

@@ -3,6 +3,7 @@
 use thiserror::Error;
 use wale_numerics::block_matrix::SLOTS;
 use wale_numerics::sparse_cholesky::CholeskyError;
+use wale_numerics::trust::{Foreseen, Trust, TrustRule, is_enough};
 
 use super::coarse::CoarseDeformation;
 use super::material::RodMaterial;
@@ -90,22 +91,17 @@ pub struct TileSolver {
     /// Unit of force \[N\] and of length \[m\].
     force: f64,
     pub(super) length: f64,
-    shift: f64,
-    convexity: f64,
+    trust: Trust,
     energy: f64,
     residual: f64,
     /// Linear systems factored since the last deformation.
     iterations: usize,
 }
 
-/// First multiple of the identity, in units of force over length, and the least that is not none.
+/// First shift, in units of force over length, and the largest: a step so short that nothing is gained by another.
 const FIRST_SHIFT: f64 = 1.0;
-const LEAST_SHIFT: f64 = 1e-9;
-/// Largest: a step so short that nothing is gained by another.
 const LARGEST_SHIFT: f64 = 1e12;
-/// Least convexity that is not none, and the first after none.
-const LEAST_CONVEXITY: f64 = 0.02;
-const SOME_CONVEXITY: f64 = 0.125;
+const RULE: TrustRule = TrustRule { least: 1e-9, doubted: 1e-9, refused: 1e-2, growth: 4.0, fall: 0.3 };
 /// Longest move of a vertex in a step, in reaches of contact: less than lies between the search for contacts and its margin.
 pub(super) const LONGEST_MOVE: f64 = 0.12;
 /// How often, and to which part, a step is shortened before another is asked for.
@@ -154,8 +150,7 @@ impl TileSolver {
             free_compression,
             force: material.bending / (radius * radius) + 1e-3 * material.soft_stretch,
             length: radius,
-            shift: FIRST_SHIFT,
-            convexity: 1.0,
+            trust: Trust::new(RULE, FIRST_SHIFT, 1.0),
             energy: f64::NAN,
             residual: f64::INFINITY,
             iterations: 0,
@@ -226,7 +221,7 @@ impl TileSolver {
 
     fn linearise(&mut self) -> Result<(), TileError> {
         self.system.refresh_contacts(&self.displacement)?;
-        self.energy = self.system.linearise(&self.displacement, self.convexity);
+        self.energy = self.system.linearise(&self.displacement, self.trust.convexity);
         // The forces of the constraints take the rest.
         self.system.constraints.project(&mut self.system.gradient);
         let largest = self.system.gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
@@ -245,15 +240,12 @@ impl TileSolver {
     /// A step that lowers the energy about as much as the second derivatives say; whether there was one.
     fn advance(&mut self) -> Result<bool, TileError> {
         let weight = self.system.tile.area() * self.displacement.len() as f64 / (3.0 * SLOTS as f64);
-        while self.shift < LARGEST_SHIFT {
+        while self.trust.shift < LARGEST_SHIFT {
             self.iterations += 1;
-            let used = if self.shift < LEAST_SHIFT { 0.0 } else { self.shift * self.force / self.length };
+            let used = self.trust.used_shift() * self.force / self.length;
             if !self.system.second.factor(used, weight)? {
-                if self.convexity < 1.0 {
-                    self.convexity = (2.0 * self.convexity).clamp(SOME_CONVEXITY, 1.0);
+                if self.trust.refuse() {
                     self.linearise()?;
-                } else {
-                    self.shift = (4.0 * self.shift).max(1e-2);
                 }
                 continue;
             }
@@ -276,14 +268,12 @@ impl TileSolver {
                 self.system.deformation.add(&rate, part * by_compression);
                 searched |= self.system.refresh_contacts(&self.displacement)?;
                 let gained = energy - self.system.energy(&self.displacement);
-                let predicted = -part * slope - 0.5 * part * part * curvature;
-                // Close to rest the energy no longer resolves the step: trust Newton there.
-                let resolved = predicted > 1e-11 * energy.abs();
-                let trust = if resolved { gained / predicted } else { 1.0 };
+                let share = Foreseen { slope, curvature }.share(part, gained, energy, 1e-11);
                 if attempt == 0 {
-                    self.judge(trust, part, (curvature / square).max(0.0) * self.length / self.force);
+                    // At least as stiff as the valley is along the step.
+                    self.trust.judge(share, part, (curvature / square).max(0.0) * self.length / self.force);
                 }
-                if trust > 1e-3 {
+                if is_enough(share) {
                     return Ok(true);
                 }
                 // Along a curved valley a shorter step is cheaper than another factor.
@@ -294,21 +284,8 @@ impl TileSolver {
                 self.linearise()?;
             }
         }
-        self.shift = FIRST_SHIFT;
+        self.trust.shift = FIRST_SHIFT;
         Ok(false)
-    }
-}
-
-impl TileSolver {
-    /// Learns from how much of the predicted energy a step has gained, along which the energy has this curvature.
-    fn judge(&mut self, trust: f64, part: f64, along: f64) {
-        if trust > 0.75 && part > 0.9 {
-            self.shift *= 0.3;
-            self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
-        } else if trust.is_nan() || trust < 0.25 {
-            // At least as stiff as the valley is along the step.
-            self.shift = (4.0 * self.shift).max(along).max(LEAST_SHIFT);
-        }
     }
 }
 

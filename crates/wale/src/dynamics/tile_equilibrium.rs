@@ -1,6 +1,7 @@
 //! Equilibrium of a periodic tile with both periods unknown, by Newton's method.
 
 use rayon::prelude::*;
+use wale_numerics::trust::{Trust, TrustRule, is_enough};
 
 use super::tile_system::{Step, TileSystem};
 use crate::fabric::TileCoordinates;
@@ -139,8 +140,7 @@ pub fn relax_tile_from(
         force,
         length,
         settings: *settings,
-        shift: FIRST_SHIFT,
-        convexity: 1.0,
+        trust: Trust::new(RULE, FIRST_SHIFT, 1.0),
         energy: f64::NAN,
         iterations: 0,
         residual: f64::INFINITY,
@@ -185,9 +185,7 @@ fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64
     start
 }
 
-/// Newton's method within a region that it trusts: where the exact second derivatives are not positive definite, ones nearer to
-/// convex take their place; and a multiple of the identity, added to them, grows where they do not tell what the energy does and
-/// vanishes where they do.
+/// Newton's method within a region that it trusts ([`wale_numerics::trust`]), with shifts in `k_b/ℓ³`.
 struct Descent<'a> {
     system: &'a mut TileSystem,
     unknowns: Vec<f64>,
@@ -195,26 +193,20 @@ struct Descent<'a> {
     force: f64,
     length: f64,
     settings: TileSettings,
-    /// Multiple of the identity, in `k_b/ℓ³`.
-    shift: f64,
-    convexity: f64,
+    trust: Trust,
     energy: f64,
     iterations: usize,
     residual: f64,
 }
 
-/// First multiple of the identity, in `k_b/ℓ³`, and the least that is not none.
+/// First shift, in `k_b/ℓ³`, and the largest: a step so short that nothing is gained by another.
 const FIRST_SHIFT: f64 = 100.0;
-const LEAST_SHIFT: f64 = 1e-4;
-/// Largest: a step so short that nothing is gained by another.
 const LARGEST_SHIFT: f64 = 1e12;
-/// Least convexity that is not none, and the first after none.
-const LEAST_CONVEXITY: f64 = 0.02;
-const SOME_CONVEXITY: f64 = 0.125;
+const RULE: TrustRule = TrustRule { least: 1e-4, doubted: 1e-4, refused: 1.0, growth: 4.0, fall: 0.2 };
 /// Largest move of a coordinate in a step, in loop lengths.
 const LONGEST_MOVE: f64 = 0.05;
 /// Part of the foreseen gain below which a shorter step is tried, how much shorter, and the last one.
-const LEAST_TRUST: f64 = 0.1;
+const LEAST_SHARE: f64 = 0.1;
 const SHORTER: f64 = 0.4;
 const SHORTEST_PART: f64 = 0.1;
 
@@ -233,21 +225,17 @@ impl Descent<'_> {
     }
 
     fn linearise(&mut self) {
-        self.energy = self.system.linearise(&self.unknowns, self.convexity);
+        self.energy = self.system.linearise(&self.unknowns, self.trust.convexity);
         self.residual = self.system.largest_force() / self.force;
     }
 
     /// A step that lowers the energy about as much as the second derivatives say; whether there was one.
     fn advance(&mut self) -> bool {
-        while self.shift < LARGEST_SHIFT {
-            let used = if self.shift < LEAST_SHIFT { 0.0 } else { self.shift };
-            let Ok(found) = self.system.step(used * self.force / self.length) else { return false };
+        while self.trust.shift < LARGEST_SHIFT {
+            let Ok(found) = self.system.step(self.trust.used_shift() * self.force / self.length) else { return false };
             let Some(step) = found else {
-                if self.convexity < 1.0 {
-                    self.convexity = (2.0 * self.convexity).clamp(SOME_CONVEXITY, 1.0);
+                if self.trust.refuse() {
                     self.linearise();
-                } else {
-                    self.shift = (4.0 * self.shift).max(1.0);
                 }
                 continue;
             };
@@ -266,22 +254,14 @@ impl Descent<'_> {
         let mut part = longest;
         loop {
             let trial: Vec<f64> = self.unknowns.iter().zip(&step.direction).map(|(u, d)| u + part * d).collect();
-            let predicted = -part * step.slope - 0.5 * part * part * step.curvature;
             let gained = self.energy - self.system.energy(&trial);
-            // Close to rest the energy no longer resolves the step: trust Newton there.
-            let resolved = predicted > 1e-12 * self.energy.abs();
-            let trust = if resolved { gained / predicted } else { 1.0 };
-            if self.settings.shorten && (trust.is_nan() || trust < LEAST_TRUST) && part > SHORTEST_PART * longest {
+            let share = step.foreseen.share(part, gained, self.energy, 1e-12);
+            if self.settings.shorten && (share.is_nan() || share < LEAST_SHARE) && part > SHORTEST_PART * longest {
                 part *= SHORTER;
                 continue;
             }
-            if trust > 0.75 && part > 0.9 {
-                self.shift *= 0.2;
-                self.convexity = if self.convexity > LEAST_CONVEXITY { 0.5 * self.convexity } else { 0.0 };
-            } else if trust.is_nan() || trust < 0.25 {
-                self.shift = (4.0 * self.shift).max(LEAST_SHIFT);
-            }
-            if trust > 1e-3 {
+            self.trust.judge(share, part, 0.0);
+            if is_enough(share) {
                 self.unknowns = trial;
                 return true;
             }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
+use wale_numerics::trust::Foreseen;
 
 use super::tile_equilibrium::TileSettings;
 use crate::energy::Foundation;
@@ -169,7 +170,7 @@ impl TileSystem {
         let slope = dot(&direction, &self.gradient) + dot(&periods, &self.period_gradient);
         let square = dot(&direction, &direction) + self.period_weight * dot(&periods, &periods);
         direction.extend(periods);
-        Ok(Some(Step { direction, slope, curvature: -slope - shift * square }))
+        Ok(Some(Step { direction, foreseen: Foreseen { slope, curvature: -slope - shift * square } }))
     }
 
     /// The row of the inverse of the second derivatives that belongs to a period, by own slots and periods \[m/N\]; `None` if they
@@ -210,8 +211,7 @@ impl TileSystem {
 /// A step by all unknowns.
 pub(super) struct Step {
     pub direction: Vec<f64>,
-    pub slope: f64,
-    pub curvature: f64,
+    pub foreseen: Foreseen,
 }
 
 fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 11] {
