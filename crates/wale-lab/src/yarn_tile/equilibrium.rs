@@ -89,11 +89,11 @@ pub struct TileSolver {
     pub(super) last: Option<(CoarseDeformation, Vec<f64>)>,
     pub(super) free_compression: bool,
     /// Unit of force \[N\] and of length \[m\].
-    force: f64,
+    pub(super) force: f64,
     pub(super) length: f64,
     trust: Trust,
     energy: f64,
-    residual: f64,
+    pub(super) residual: f64,
     /// Linear systems factored since the last deformation.
     iterations: usize,
 }

@@ -10,6 +10,7 @@ mod neighbours;
 mod path;
 mod pattern_file;
 mod rest_shape;
+mod sensitivity;
 mod stress;
 mod system;
 #[cfg(test)]
@@ -23,5 +24,6 @@ pub use equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolve
 pub use material::RodMaterial;
 pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
 pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
+pub use sensitivity::{EquilibriumSlopes, RodParameter};
 pub use stress::{CoarseStress, bending_stiffness};
 pub use tile::{Edge, TileFault, YarnTile};

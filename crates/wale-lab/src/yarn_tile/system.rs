@@ -185,6 +185,11 @@ impl TileSystem {
     }
 
     /// Positions of an element's vertices in space, one after the other.
+    pub fn positions<const K: usize, const N: usize>(&self, stencil: &[Image; K], displacement: &[f64]) -> [f64; N] {
+        self.world(&stencil.map(|image| self.flat_image(image, displacement)))
+    }
+
+    /// The same of positions in the stretched plane.
     #[inline]
     fn world<const K: usize, const N: usize>(&self, flat: &[[f64; 3]; K]) -> [f64; N] {
         let mut q = [0.0; N];

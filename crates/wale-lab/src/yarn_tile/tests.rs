@@ -245,3 +245,45 @@ fn impossible_deformations_are_errors() {
     }
     assert!(solver.solve(&CoarseDeformation::REST).is_ok());
 }
+
+#[test]
+fn slopes_by_the_material_are_those_of_differences() {
+    // Yarns slide along themselves at next to no cost: where they stop is only as sharp as the tolerance over that.
+    let sharp = EquilibriumSettings { tolerance: 1e-13, ..settings() };
+    // The straight yarns of the weave, symmetric as they are drawn, balance on a ridge at large stretch.
+    for (tile, stretch) in [(stockinette(), 0.08), (basket(), 0.02)] {
+        let base = material(&tile);
+        let material = RodMaterial { stiff_stretch: 3.0 * base.soft_stretch, onset: 1e-3, ..base };
+        for (free, angle) in [(false, 0.0), (false, 0.7), (true, 0.0), (true, 0.7)] {
+            let deformation = CoarseDeformation::stretched(angle, stretch, 0.02);
+            let make = if free { TileSolver::free_compression } else { TileSolver::new };
+            let mut solver = make(&tile, &material, sharp).unwrap();
+            let at = rest(&mut solver, &deformation);
+            let slopes = solver.slopes().unwrap();
+            assert!(slopes.stable);
+            let values = material.parameters();
+            for k in 0..RodParameter::COUNT {
+                let near = |factor: f64| {
+                    let mut changed = values;
+                    changed[k] *= factor;
+                    let mut solver = make(&tile, &material.with_parameters(changed), sharp).unwrap();
+                    solver.place(&at.deformation, &at.displacement).unwrap();
+                    let found = rest(&mut solver, &at.deformation);
+                    [found.stress.stretch, found.deformation.compression()]
+                };
+                let h = 1e-4;
+                let (up, down) = (near(1.0 + h), near(1.0 - h));
+                let name = RodParameter::NAMES[k];
+                for (i, slope) in [slopes.stress[k], slopes.compression[k]].into_iter().enumerate() {
+                    let (expected, found) = ((up[i] - down[i]) / (2.0 * h), slope * values[k]);
+                    let size = if i == 0 { at.stress.stretch.abs() } else { 0.02 };
+                    assert!(
+                        (expected - found).abs() < 1e-3 * found.abs() + 2e-5 * size,
+                        "{name} {free} {angle} {i}: {found} {expected}"
+                    );
+                }
+                assert!(slopes.stress[k] != 0.0, "{name}");
+            }
+        }
+    }
+}

@@ -145,6 +145,27 @@ impl RodContact {
         }
         sum
     }
+
+    /// How the gradient \[N\] changes with the radius of the outer phase \[N/m\].
+    #[must_use]
+    pub fn gradient_by_outer_radius(&self, q: &[f64; 12]) -> [f64; 12] {
+        let ContactPhase { radius, stiffness } = self.phases[0];
+        let mut gradient = [0.0; 12];
+        Pair::new(q, 2.0 * radius).for_each(|factors, weight, d, square| {
+            let distance = square.sqrt();
+            let x = 0.5 * distance / radius;
+            let [_, first, second] = self.reading.profile(x);
+            // ∂/∂R of k f'(D/2R)/2R.
+            let slope = -0.5 * stiffness * (x * second + first) / (radius * radius);
+            let pull = if distance > 0.0 { weight * self.rest_area * slope / distance } else { 0.0 };
+            for (point, factor) in factors.iter().enumerate() {
+                for i in 0..3 {
+                    gradient[3 * point + i] += factor * pull * d[i];
+                }
+            }
+        });
+        gradient
+    }
 }
 
 impl Element<12> for RodContact {
@@ -287,6 +308,24 @@ mod tests {
                     assert!((energy - local.energy).abs() < 1e-14 * energy);
                     assert!(gradient.iter().zip(&local.gradient).all(|(a, b)| (a - b).abs() < 1e-13 * size));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_gradient_follows_the_outer_radius() {
+        let mut random = Random::new(55);
+        for reading in READINGS {
+            for apart in [0.25, 0.5, 0.7] {
+                let (q, element) = (crossing(&mut random, apart), element(reading));
+                let at = |radius: f64| {
+                    let outer = ContactPhase { radius, ..element.phases[0] };
+                    RodContact { phases: [outer, element.phases[1]], ..element }.gradient(&q).1
+                };
+                let (up, down, slope) = (at(0.5 + 1e-6), at(0.5 - 1e-6), element.gradient_by_outer_radius(&q));
+                let size = slope.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+                assert!(size > 0.0, "{reading:?} {apart}");
+                assert!(slope.iter().enumerate().all(|(i, s)| ((up[i] - down[i]) / 2e-6 - s).abs() < 1e-5 * size));
             }
         }
     }

@@ -38,6 +38,16 @@ impl RodStretch {
             [0.5 * (stiff * over * over + soft * onset * (2.0 * strain - onset)), stiff * over + soft * onset, stiff]
         }
     }
+
+    /// How the gradient \[N\] changes with the onset `ε̄`.
+    #[must_use]
+    pub fn gradient_by_onset(&self, q: &[f64; 6]) -> [f64; 6] {
+        let d = sub(point(q, 3), point(q, 0));
+        let length = dot(d, d).sqrt();
+        let tension = if length / self.rest_length - 1.0 > self.onset { self.soft - self.stiff } else { 0.0 };
+        let f = d.map(|x| x * tension / length);
+        [-f[0], -f[1], -f[2], f[0], f[1], f[2]]
+    }
 }
 
 impl Element<6> for RodStretch {
@@ -108,6 +118,18 @@ mod tests {
         let factor = ELEMENT.rest_length * (1.0 + strain) / dot(d, d).sqrt();
         let x: [f64; 3] = std::array::from_fn(|_| random.next());
         std::array::from_fn(|i| if i < 3 { x[i] } else { x[i - 3] + factor * d[i - 3] })
+    }
+
+    #[test]
+    fn the_gradient_follows_the_onset() {
+        let mut random = Random::new(54);
+        for strain in [-0.2, 0.05, 0.3] {
+            let q = strained(&mut random, strain);
+            let at = |onset: f64| RodStretch { onset, ..ELEMENT }.gradient(&q).1;
+            let (up, down, slope) = (at(ELEMENT.onset + 1e-6), at(ELEMENT.onset - 1e-6), ELEMENT.gradient_by_onset(&q));
+            assert!(slope.iter().enumerate().all(|(i, s)| ((up[i] - down[i]) / 2e-6 - s).abs() < 1e-6));
+            assert_eq!(slope.iter().any(|s| s.abs() > 1.0), strain > ELEMENT.onset);
+        }
     }
 
     #[test]
