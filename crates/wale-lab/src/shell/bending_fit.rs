@@ -5,8 +5,9 @@ use wale::energy::BendingStiffness;
 
 use super::card::ShellCard;
 use super::error::{ShellError, positive};
-use super::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
+
 use super::pear_loop::{PearLoop, PearPoint};
+use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit_positive};
 
 /// Pear loops of a strip along one direction.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,10 +88,13 @@ pub fn fit_bending(curves: &[PearCurve], card: &ShellCard, least_noise: f64) -> 
         Some(out)
     };
     let starts = STARTS.map(|length| [stiffness(length); BendingStiffness::COUNT]);
-    let settings =
-        LeastSquaresSettings { max_evaluations: MOST_EVALUATIONS, bounds: BOUNDS.map(stiffness), least_noise };
+    let settings = LeastSquaresSettings {
+        max_evaluations: MOST_EVALUATIONS,
+        bounds: [BOUNDS.map(stiffness); BendingStiffness::COUNT],
+        least_noise,
+    };
     let failed = || ShellError::Fit("no start led to a fabric whose loops came to rest".into());
-    let least_squares = fit(evaluate, &starts, &settings).ok_or_else(failed)?;
+    let least_squares = fit_positive(evaluate, &starts, &settings).ok_or_else(failed)?;
     let points = loops(&least_squares.parameters).ok_or_else(failed)?;
     let off: f64 = points.iter().flatten().zip(&measured).map(|(point, r)| (point.aspect - r).abs()).sum();
     Ok(BendingFit {

@@ -6,9 +6,10 @@ use wale::energy::{BendingStiffness, MembraneStiffness};
 use super::card::ShellCard;
 use super::clamped_stretch::ClampedStretch;
 use super::error::ShellError;
-use super::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
+
 use super::stretch_curve::{StretchCurve, StretchPoint};
 use super::uniform::uniform_stretch;
+use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit_positive};
 
 /// How a curve was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,11 +166,11 @@ pub fn fit_membrane(measured: &[MeasuredStretch], settings: &MembraneFitSettings
         Some(out)
     };
 
-    let bounds = BOUNDS.map(|part| part * unit);
+    let bounds = [BOUNDS.map(|part| part * unit); MembraneStiffness::COUNT];
     let search =
         LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
     let failed = || ShellError::Fit("no start led to a fabric whose tests could be done".into());
-    let least_squares = fit(evaluate, &starts, &search).ok_or_else(failed)?;
+    let least_squares = fit_positive(evaluate, &starts, &search).ok_or_else(failed)?;
     let found = answers(&least_squares.parameters).ok_or_else(failed)?;
     let points: Vec<Vec<[StretchPoint; 2]>> = targets
         .iter()

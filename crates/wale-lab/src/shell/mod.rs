@@ -10,7 +10,6 @@ pub mod cantilever;
 pub mod card;
 pub mod clamped_stretch;
 pub mod error;
-pub mod least_squares;
 pub mod membrane_fit;
 pub mod mesh;
 pub mod pear_loop;

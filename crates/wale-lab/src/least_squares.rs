@@ -1,10 +1,12 @@
-//! Nonlinear least squares in the logarithms of positive parameters, from several starts.
+//! Nonlinear least squares from several starts, in coordinates of which one unit is a large change: logarithms, as a rule.
+
+use std::convert::Infallible;
 
 use rayon::prelude::*;
 use wale_numerics::dense::SmallSystem;
 use wale_numerics::eigen::symmetric_eigen;
 
-/// Residuals and, for each, its derivatives by the logarithms of the `P` parameters.
+/// Residuals and, for each, its derivatives by the `P` coordinates.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Residuals<const P: usize> {
     /// Residuals, scaled so that one is as bad as any other \[–\].
@@ -38,11 +40,11 @@ impl<const P: usize> Residuals<P> {
 
 /// How parameters are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeastSquaresSettings {
+pub struct LeastSquaresSettings<const P: usize> {
     /// Most evaluations a start.
     pub max_evaluations: usize,
-    /// Least and largest value of a parameter.
-    pub bounds: [f64; 2],
+    /// Least and largest value of each parameter; one whose bounds meet is held.
+    pub bounds: [[f64; 2]; P],
     /// Noise of the data that a parameter's interval reckons with even where the fit is closer \[–\].
     pub least_noise: f64,
 }
@@ -54,12 +56,12 @@ pub struct LeastSquaresFit<const P: usize> {
     pub parameters: [f64; P],
     /// Sum of squares.
     pub cost: f64,
-    /// Singular values of the Jacobian by the logarithms, ascending: how much the residuals change for a change by a factor e.
+    /// Singular values of the Jacobian, ascending: how much the residuals change for a change by one unit, a factor e of a logarithm.
     pub singular_values: [f64; P],
-    /// The combinations of logarithms that belong to them.
+    /// The combinations of coordinates that belong to them.
     pub combinations: [[f64; P]; P],
-    /// Factor within which each parameter is known with 95 % confidence: it may be that much smaller or larger; infinite where
-    /// the data do not say.
+    /// Factor within which each parameter is known with 95 % confidence, `e` to the power of the interval of its coordinate: it may be
+    /// that much smaller or larger; infinite where the data do not say, one where it is held.
     pub uncertainty: [f64; P],
     /// Starts that led to parameters at all.
     pub starts_that_ended: usize,
@@ -75,7 +77,7 @@ impl<const P: usize> LeastSquaresFit<P> {
     }
 }
 
-/// Largest change of a logarithm in a step.
+/// Largest change of a coordinate in a step.
 const LONGEST_STEP: f64 = 1.5;
 /// Damping at first, and that at which nothing is gained by more.
 const FIRST_DAMPING: f64 = 1e-2;
@@ -83,63 +85,93 @@ const LARGEST_DAMPING: f64 = 1e10;
 /// Relative gain below which the fit is at its end.
 const LEAST_GAIN: f64 = 1e-9;
 
-/// The parameters of least squares by Levenberg–Marquardt from each start; the best of all, the earlier where two are equal.
-///
-/// `evaluate` gets parameters, and answers `None` where a test of them fails: that start then goes another way, or is left out.
-/// Starts run in parallel; the result does not depend on the number of threads. `None` if none led anywhere.
-pub fn fit<const P: usize>(
+/// Positive parameters of least squares: their coordinates are logarithms, and `evaluate` gets the parameters and gives derivatives by
+/// the logarithms. Otherwise as [`fit`].
+pub fn fit_positive<const P: usize>(
     evaluate: impl Fn(&[f64; P]) -> Option<Residuals<P>> + Sync,
     starts: &[[f64; P]],
-    settings: &LeastSquaresSettings,
+    settings: &LeastSquaresSettings<P>,
 ) -> Option<LeastSquaresFit<P>> {
-    let found: Vec<Descent<P>> = starts
-        .par_iter()
-        .map(|start| descend(&evaluate, start, settings))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .flatten()
-        .collect();
+    let logs = LeastSquaresSettings { bounds: settings.bounds.map(|pair| pair.map(f64::ln)), ..*settings };
+    let starts: Vec<[f64; P]> = starts.iter().map(|start| start.map(f64::ln)).collect();
+    let found = fit(|at: &[f64; P]| Ok::<_, Infallible>(evaluate(&at.map(f64::exp))), &starts, &logs);
+    let found = match found {
+        Ok(found) => found?,
+        Err(never) => match never {},
+    };
+    Some(LeastSquaresFit { parameters: found.parameters.map(f64::exp), ..found })
+}
+
+/// The coordinates of least squares by Levenberg–Marquardt from each start; the best of all, the earlier where two are equal.
+///
+/// `evaluate` gets coordinates, and answers `None` where a test of them fails: that start then goes another way, or is left out.
+/// Starts run in parallel; the result does not depend on the number of threads. `None` if none led anywhere.
+///
+/// # Errors
+/// The first that `evaluate` ends with, in the order of the starts; all starts are followed as far as they go.
+pub fn fit<const P: usize, E: Send>(
+    evaluate: impl Fn(&[f64; P]) -> Result<Option<Residuals<P>>, E> + Sync,
+    starts: &[[f64; P]],
+    settings: &LeastSquaresSettings<P>,
+) -> Result<Option<LeastSquaresFit<P>>, E> {
+    let ends: Vec<Result<Option<Descent<P>>, E>> =
+        starts.par_iter().map(|start| descend(&evaluate, start, settings)).collect();
+    let found: Vec<Descent<P>> = ends.into_iter().collect::<Result<Vec<_>, E>>()?.into_iter().flatten().collect();
     let starts_that_ended = found.len();
-    let best = found.into_iter().reduce(|best, next| if next.cost < best.cost { next } else { best })?;
+    let Some(best) = found.into_iter().reduce(|best, next| if next.cost < best.cost { next } else { best }) else {
+        return Ok(None);
+    };
     let (squares, combinations) = symmetric_eigen(&best.here.normal());
     let freedom = best.here.values.len().saturating_sub(P).max(1);
     let noise = (best.cost / freedom as f64).max(settings.least_noise * settings.least_noise);
-    let mut uncertainty = [0.0; P];
-    for (k, factor) in uncertainty.iter_mut().enumerate() {
+    let mut uncertainty = [1.0; P];
+    for (k, factor) in uncertainty.iter_mut().enumerate().filter(|(k, _)| settings.is_free(*k)) {
         let variance: f64 = (0..P)
             .filter(|&m| combinations[m][k].abs() > 1e-9)
             .map(|m| noise * combinations[m][k] * combinations[m][k] / squares[m].max(0.0))
             .sum();
         *factor = (1.96 * variance.sqrt()).exp();
     }
-    Some(LeastSquaresFit {
-        parameters: best.logs.map(f64::exp),
+    Ok(Some(LeastSquaresFit {
+        parameters: best.place,
         cost: best.cost,
         singular_values: squares.map(|square| square.max(0.0).sqrt()),
         combinations,
         uncertainty,
         starts_that_ended,
         evaluations: best.evaluations,
-    })
+    }))
+}
+
+impl<const P: usize> LeastSquaresSettings<P> {
+    fn is_free(&self, k: usize) -> bool {
+        self.bounds[k][0] < self.bounds[k][1]
+    }
 }
 
 struct Descent<const P: usize> {
-    logs: [f64; P],
+    place: [f64; P],
     here: Residuals<P>,
     cost: f64,
     evaluations: usize,
 }
 
-fn descend<const P: usize>(
-    evaluate: &impl Fn(&[f64; P]) -> Option<Residuals<P>>,
+fn descend<const P: usize, E>(
+    evaluate: &impl Fn(&[f64; P]) -> Result<Option<Residuals<P>>, E>,
     start: &[f64; P],
-    settings: &LeastSquaresSettings,
-) -> Option<Descent<P>> {
-    let [low, high] = settings.bounds.map(f64::ln);
-    let mut logs = start.map(|p| p.ln().clamp(low, high));
+    settings: &LeastSquaresSettings<P>,
+) -> Result<Option<Descent<P>>, E> {
+    let within = |k: usize, value: f64| value.clamp(settings.bounds[k][0], settings.bounds[k][1]);
+    let mut place: [f64; P] = std::array::from_fn(|k| within(k, start[k]));
     let finite = |r: &Residuals<P>| r.cost().is_finite() && r.slopes.iter().flatten().all(|s| s.is_finite());
-    let at = |logs: &[f64; P]| evaluate(&logs.map(f64::exp)).filter(finite);
-    let mut here = at(&logs)?;
+    let at = |place: &[f64; P]| -> Result<Option<Residuals<P>>, E> {
+        let mut found = evaluate(place)?.filter(finite);
+        for row in found.iter_mut().flat_map(|found| &mut found.slopes) {
+            (0..P).filter(|&k| !settings.is_free(k)).for_each(|k| row[k] = 0.0);
+        }
+        Ok(found)
+    };
+    let Some(mut here) = at(&place)? else { return Ok(None) };
     let mut cost = here.cost();
     let mut damping = FIRST_DAMPING;
     let mut evaluations = 1;
@@ -152,7 +184,8 @@ fn descend<const P: usize>(
         system.clear(P);
         for i in 0..P {
             // A parameter at a bound that would go on past it is held.
-            let held = (logs[i] <= low && slope[i] > 0.0) || (logs[i] >= high && slope[i] < 0.0);
+            let [low, high] = settings.bounds[i];
+            let held = (place[i] <= low && slope[i] > 0.0) || (place[i] >= high && slope[i] < 0.0);
             for j in 0..P {
                 system.matrix[P * i + j] = normal[i][j];
             }
@@ -166,12 +199,12 @@ fn descend<const P: usize>(
         }
         let longest = system.right_side.iter().fold(0.0f64, |m, d| m.max(d.abs()));
         let part = (LONGEST_STEP / longest.max(f64::MIN_POSITIVE)).min(1.0);
-        let trial: [f64; P] = std::array::from_fn(|i| (logs[i] + part * system.right_side[i]).clamp(low, high));
+        let trial: [f64; P] = std::array::from_fn(|i| within(i, place[i] + part * system.right_side[i]));
         evaluations += 1;
-        match at(&trial).map(|found| (found.cost(), found)) {
+        match at(&trial)?.map(|found| (found.cost(), found)) {
             Some((lower, found)) if lower < cost => {
                 let gain = (cost - lower) / cost;
-                (logs, here, cost) = (trial, found, lower);
+                (place, here, cost) = (trial, found, lower);
                 damping = (0.2 * damping).max(1e-14);
                 if gain < LEAST_GAIN {
                     break;
@@ -181,15 +214,16 @@ fn descend<const P: usize>(
             _ => damping *= 5.0,
         }
     }
-    Some(Descent { logs, here, cost, evaluations })
+    Ok(Some(Descent { place, here, cost, evaluations }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    const SETTINGS: LeastSquaresSettings =
-        LeastSquaresSettings { max_evaluations: 200, bounds: [1e-6, 1e6], least_noise: 0.01 };
+    fn settings<const P: usize>() -> LeastSquaresSettings<P> {
+        LeastSquaresSettings { max_evaluations: 200, bounds: [[1e-6, 1e6]; P], least_noise: 0.01 }
+    }
 
     /// `y = a e^{−bt}` with a third parameter that plays no role.
     fn decay(truth: [f64; 2]) -> impl Fn(&[f64; 3]) -> Option<Residuals<3>> {
@@ -206,7 +240,7 @@ mod tests {
 
     #[test]
     fn parameters_are_found_and_the_idle_one_is_told() {
-        let fit = fit(decay([3.0, 0.7]), &[[1.0, 1.0, 1.0], [0.01, 5.0, 2.0]], &SETTINGS).unwrap();
+        let fit = fit_positive(decay([3.0, 0.7]), &[[1.0, 1.0, 1.0], [0.01, 5.0, 2.0]], &settings()).unwrap();
         assert!((fit.parameters[0] - 3.0).abs() < 1e-6 && (fit.parameters[1] - 0.7).abs() < 1e-6, "{fit:?}");
         assert_eq!(fit.undetermined(), [2]);
         assert!(fit.singular_values[0] < 1e-9 && fit.combinations[0][2].abs() > 0.999);
@@ -217,10 +251,10 @@ mod tests {
     fn failures_cost_a_start_or_a_step_and_no_more() {
         let known = decay([3.0, 0.7]);
         let patchy = |p: &[f64; 3]| if p[0] > 3.2 || p[1] > 2.0 { None } else { known(p) };
-        let fit = fit(patchy, &[[1.0, 5.0, 1.0], [0.5, 0.3, 1.0]], &SETTINGS).unwrap();
+        let fit = fit_positive(patchy, &[[1.0, 5.0, 1.0], [0.5, 0.3, 1.0]], &settings()).unwrap();
         assert_eq!(fit.starts_that_ended, 1);
         assert!((fit.parameters[0] - 3.0).abs() < 1e-6, "{fit:?}");
-        assert!(super::fit(|_: &[f64; 3]| None, &[[1.0; 3]], &SETTINGS).is_none());
+        assert!(fit_positive(|_: &[f64; 3]| None, &[[1.0; 3]], &settings()).is_none());
     }
 
     #[test]
@@ -233,9 +267,37 @@ mod tests {
             }
             Some(out)
         };
-        let fit = fit(sum, &[[1.0, 1.0]], &SETTINGS).unwrap();
+        let fit = fit_positive(sum, &[[1.0, 1.0]], &settings()).unwrap();
         assert!(fit.parameters[1] < 1e-5);
         // Least squares of a t alone: a = Σ t(2t − 1)/Σ t² = 22/14.
         assert!((fit.parameters[0] - 22.0 / 14.0).abs() < 1e-5, "{fit:?}");
+    }
+
+    #[test]
+    fn a_parameter_whose_bounds_meet_is_held_and_the_rest_fitted() {
+        let mut held = settings();
+        held.bounds[1] = [0.5, 0.5];
+        let fit = fit_positive(decay([3.0, 0.5]), &[[1.0, 2.0, 1.0]], &held).unwrap();
+        assert!((fit.parameters[0] - 3.0).abs() < 1e-6 && fit.parameters[1] == 0.5, "{fit:?}");
+        assert_eq!(fit.uncertainty[1], 1.0);
+    }
+
+    #[test]
+    fn an_evaluation_that_ends_ends_the_fit_and_every_start_goes_as_far_as_it_can() {
+        let asked = std::sync::Mutex::new(Vec::new());
+        let evaluate = |at: &[f64; 1]| {
+            if at[0].fract() == 0.0 {
+                let mut out = Residuals::default();
+                out.push(at[0] - 7.5, [1.0]);
+                return Ok(Some(out));
+            }
+            asked.lock().unwrap().push(at[0]);
+            Err(at[0])
+        };
+        let whole = LeastSquaresSettings { max_evaluations: 9, bounds: [[-10.0, 10.0]], least_noise: 0.01 };
+        let end = fit(evaluate, &[[1.0], [2.0]], &whole).unwrap_err();
+        let mut asked = asked.into_inner().unwrap();
+        asked.sort_by(f64::total_cmp);
+        assert!(asked.len() == 2 && end == asked[0], "{asked:?} {end}");
     }
 }
