@@ -7,4 +7,5 @@ pub mod fabric_file;
 pub mod fabric_fit;
 pub mod least_squares;
 pub mod shell;
+pub mod yarn_fit;
 pub mod yarn_tile;

@@ -90,6 +90,11 @@ impl ConstrainedSystem {
         (self.shift, self.spring) = (0.0, 0.0);
     }
 
+    /// Adds a number to the diagonal of `H`.
+    pub fn add_diagonal(&mut self, value: f64) {
+        self.matrix.add_diagonal(&self.unknown, value);
+    }
+
     /// Factors it with `shift` times the identity, on the border times `weight` too, added; whether the shifted system is
     /// positive definite where the constraints hold. If not, it cannot be solved.
     ///

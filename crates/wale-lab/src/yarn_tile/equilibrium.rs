@@ -19,11 +19,16 @@ pub struct EquilibriumSettings {
     pub tolerance: f64,
     /// Most Newton iterations, as linear systems factored.
     pub max_iterations: usize,
+    /// Stiffness of springs that hold every vertex where the coarse deformation takes it, over `(k_b/R² + 10⁻³ k_s1)/R` \[–\].
+    ///
+    /// Yarns without friction slide along themselves and past each other at next to no cost, in valleys up to `10⁷` times softer than
+    /// a yarn is: where they stop is chance. Springs a ten-thousandth as stiff as a bent yarn end that, and bear next to no stress.
+    pub anchor: f64,
 }
 
 impl Default for EquilibriumSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-8, max_iterations: 600 }
+        Self { tolerance: 1e-8, max_iterations: 600, anchor: 0.0 }
     }
 }
 
@@ -141,14 +146,17 @@ impl TileSolver {
     ) -> Result<Self, TileError> {
         material.check(tile)?;
         let radius = material.contact[0].radius;
+        let force = material.force_unit();
+        let mut system = TileSystem::new(tile, material, free_compression)?;
+        system.anchor = settings.anchor * force / radius;
         Ok(Self {
-            system: TileSystem::new(tile, material, free_compression)?,
+            system,
             settings,
             displacement: vec![0.0; SLOTS * tile.vertex_count()],
             before: None,
             last: None,
             free_compression,
-            force: material.bending / (radius * radius) + 1e-3 * material.soft_stretch,
+            force,
             length: radius,
             trust: Trust::new(RULE, FIRST_SHIFT, 1.0),
             energy: f64::NAN,

@@ -46,6 +46,12 @@ impl RodMaterial {
     /// Stiffness of the inner contact, in the paper's unnamed unit, here J/m² [Sperl2022, section 7.3.2].
     pub const INNER_STIFFNESS: f64 = 1e3;
 
+    /// Unit of force of a bent yarn, `k_b/R₁² + 10⁻³ k_s1` \[N\].
+    pub(super) fn force_unit(&self) -> f64 {
+        let radius = self.contact[0].radius;
+        self.bending / (radius * radius) + 1e-3 * self.soft_stretch
+    }
+
     /// Distance of centrelines within which yarns touch \[m\].
     pub(super) fn reach(&self) -> f64 {
         2.0 * self.contact[0].radius.max(self.contact[1].radius)

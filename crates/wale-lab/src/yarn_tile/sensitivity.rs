@@ -204,6 +204,16 @@ impl TileSystem {
             let wider = element.gradient_by_outer_radius(&q);
             self.add_work(stencil, &wider, motions, &mut work[RodParameter::OuterRadius as usize]);
         }
+        // Anchors are a multiple of (k_b/R² + 10⁻³ k_s1)/R.
+        let radius = self.material.contact[0].radius;
+        let unit = self.anchor * radius / self.material.force_unit();
+        let by_radius = -unit * (self.material.force_unit() / radius + 2.0 * self.material.bending / radius.powi(3));
+        for (k, motion) in motions.iter().enumerate() {
+            let pull: f64 = motion.vertices.iter().zip(displacement).map(|(d, u)| d * u).sum();
+            work[RodParameter::SoftStretch as usize][k] += 1e-3 * unit / radius * pull;
+            work[RodParameter::Bending as usize][k] += unit / radius.powi(3) * pull;
+            work[RodParameter::OuterRadius as usize][k] += by_radius / radius * pull;
+        }
         work
     }
 

@@ -30,7 +30,9 @@ pub struct TileSystem {
     /// Gradient by the displacements, and by the compression \[N, J\].
     pub gradient: Vec<f64>,
     pub compression_gradient: f64,
-    material: RodMaterial,
+    /// Stiffness of the springs that hold `ũ` \[N/m\].
+    pub anchor: f64,
+    pub material: RodMaterial,
     followers: Followers,
     free_compression: bool,
     /// Where the vertices were in the stretched plane, and how it was stretched, when contacts were last searched for.
@@ -70,6 +72,7 @@ impl TileSystem {
             second,
             gradient: vec![0.0; SLOTS * tile.vertex_count()],
             compression_gradient: 0.0,
+            anchor: 0.0,
             material: *material,
             free_compression,
             searched: None,
@@ -170,6 +173,7 @@ impl TileSystem {
         self.energy_of(&self.stretch, displacement)
             + self.energy_of(&self.bending, displacement)
             + self.energy_of(&self.contact, displacement)
+            + 0.5 * self.anchor * displacement.iter().map(|u| u * u).sum::<f64>()
     }
 
     fn energy_of<E: Element<N>, const N: usize, const K: usize>(&self, kind: &Kind<E, K>, displacement: &[f64]) -> f64 {
@@ -210,7 +214,9 @@ impl TileSystem {
             + self.add_kind(&bending, displacement, convexity)
             + self.add_kind(&contact, displacement, convexity);
         (self.stretch, self.bending, self.contact) = (stretch, bending, contact);
-        energy
+        self.gradient.iter_mut().zip(displacement).for_each(|(g, u)| *g += self.anchor * u);
+        self.second.add_diagonal(self.anchor);
+        energy + 0.5 * self.anchor * displacement.iter().map(|u| u * u).sum::<f64>()
     }
 
     /// The elements, moved out while the rest of the system is written to.

@@ -1,0 +1,82 @@
+//! A tile pulled along one direction, free to narrow: what a fit compares with a measured curve.
+
+use crate::shell::StretchPoint;
+use crate::yarn_tile::{
+    CoarseDeformation, EquilibriumSettings, RodMaterial, RodParameter, TileError, TileSolver, YarnTile,
+};
+
+/// A point of a uniform stretch with its derivatives by `P` numbers of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Answer<const P: usize> {
+    /// Stretch, first Piola-Kirchhoff stress \[N/m\], compression.
+    pub point: StretchPoint,
+    /// Derivatives of the stress.
+    pub stress_slope: [f64; P],
+    /// Derivatives of the compression.
+    pub compression_slope: [f64; P],
+}
+
+/// How a tile is pulled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PullSettings {
+    /// Largest step of stretch \[–\].
+    pub largest_step: f64,
+    /// How equilibria are found.
+    pub equilibrium: EquilibriumSettings,
+    /// Residual, in the unit of [`EquilibriumSettings::tolerance`], up to which a tile that did not come to rest is taken for what
+    /// it is: yarns that touch softly creep along valleys that stress does not feel.
+    pub accepted: f64,
+}
+
+impl Default for PullSettings {
+    fn default() -> Self {
+        let equilibrium = EquilibriumSettings { tolerance: 1e-8, max_iterations: 300, anchor: 1e-4 };
+        Self { largest_step: 0.08, equilibrium, accepted: 1e-4 }
+    }
+}
+
+/// Pulls a tile along a direction at an angle \[rad\] from the weft to each of the rising stretches, without stress across.
+///
+/// Differs from the paper: there the compression of no stress is found at both ends of the range, and interpolated between; here it
+/// is an unknown of every equilibrium, at hardly any cost.
+///
+/// # Errors
+/// [`TileError`]; of the first stretch at which there is no equilibrium.
+pub fn pull(
+    tile: &YarnTile,
+    material: &RodMaterial,
+    angle: f64,
+    stretches: &[f64],
+    with_slopes: bool,
+    settings: &PullSettings,
+) -> Result<Vec<Answer<{ RodParameter::COUNT }>>, TileError> {
+    let mut iterations = 0;
+    let mut solver = TileSolver::free_compression(tile, material, settings.equilibrium)?;
+    let mut found = solver.solve(&CoarseDeformation::stretched(angle, 0.0, 0.0))?;
+    let (mut from, mut answers) = (0.0, Vec::with_capacity(stretches.len()));
+    for &to in stretches {
+        let steps = ((to - from).abs() / settings.largest_step).ceil().max(1.0) as u32;
+        for step in 1..=steps {
+            let stretch = from + (to - from) * f64::from(step) / f64::from(steps);
+            let compression = found.deformation.compression();
+            found = solver.solve(&CoarseDeformation::stretched(angle, stretch, compression))?;
+            iterations += found.iterations;
+        }
+        from = to;
+        if found.residual > settings.accepted {
+            return Err(TileError::NoEquilibrium { residual: found.residual });
+        }
+        let point =
+            StretchPoint { stretch: to, force: found.stress.stretch, compression: found.deformation.compression() };
+        let (mut stress_slope, mut compression_slope) = ([0.0; RodParameter::COUNT], [0.0; RodParameter::COUNT]);
+        if with_slopes {
+            let slopes = solver.slopes()?;
+            (stress_slope, compression_slope) = (slopes.stress, slopes.compression);
+        }
+        answers.push(Answer { point, stress_slope, compression_slope });
+    }
+    if std::env::var("IT").is_ok() {
+        println!("iterations {iterations}");
+    }
+    Ok(answers)
+}

@@ -1,0 +1,91 @@
+//! Coordinates of a fit: the numbers of a yarn within their bounds.
+
+use serde::{Deserialize, Serialize};
+
+use crate::yarn_tile::{RodMaterial, RodParameter};
+
+/// Number of parameters.
+const P: usize = RodParameter::COUNT;
+
+/// Which numbers of a yarn are fitted, and within which bounds [Sperl2022, section 7.3.2].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RodSpace {
+    /// Least and largest value of each number; one whose bounds meet is held.
+    pub bounds: [[f64; 2]; P],
+}
+
+/// One unit of the coordinate of the onset \[–\]; the others are logarithms.
+const ONSET_UNIT: f64 = 0.05;
+const ONSET: usize = RodParameter::Onset as usize;
+
+impl RodSpace {
+    /// The paper's bounds for a yarn of a stiffness `k_s2` \[N\] whose edges all touch with a radius `R_est` \[m\]; `k_s2` is held.
+    ///
+    /// The paper has no unit for `k_c1 ∈ [10⁻², 10²]`; here it is J/m².
+    #[must_use]
+    pub fn paper(stiff_stretch: f64, contact_radius: f64) -> Self {
+        let bending = 0.25 * stiff_stretch * contact_radius * contact_radius;
+        Self {
+            bounds: [
+                [1e-3 * stiff_stretch, stiff_stretch],
+                [stiff_stretch; 2],
+                [0.0, 0.15],
+                [1e-3 * bending, 10.0 * bending],
+                [0.5 * contact_radius, 1.5 * contact_radius],
+                [1e-2, 1e2],
+            ],
+        }
+    }
+
+    /// Holds one number at a value.
+    #[must_use]
+    pub fn holding(mut self, parameter: RodParameter, value: f64) -> Self {
+        self.bounds[parameter as usize] = [value; 2];
+        self
+    }
+
+    /// Gives one number other bounds.
+    #[must_use]
+    pub fn within(mut self, parameter: RodParameter, bounds: [f64; 2]) -> Self {
+        self.bounds[parameter as usize] = bounds;
+        self
+    }
+
+    /// The same bounds for coordinates.
+    #[must_use]
+    pub fn coordinate_bounds(&self) -> [[f64; 2]; P] {
+        let [low, high] = [0, 1].map(|side| Self::coordinates(self.bounds.map(|pair| pair[side])));
+        std::array::from_fn(|k| [low[k], high[k]])
+    }
+
+    /// Coordinates of parameters.
+    #[must_use]
+    pub fn coordinates(parameters: [f64; P]) -> [f64; P] {
+        std::array::from_fn(|k| if k == ONSET { parameters[k] / ONSET_UNIT } else { parameters[k].ln() })
+    }
+
+    /// Parameters of coordinates.
+    #[must_use]
+    pub fn parameters(coordinates: [f64; P]) -> [f64; P] {
+        std::array::from_fn(|k| if k == ONSET { coordinates[k] * ONSET_UNIT } else { coordinates[k].exp() })
+    }
+
+    /// Derivatives by coordinates of derivatives by parameters.
+    #[must_use]
+    pub fn by_coordinates(parameters: &[f64; P], slopes: [f64; P]) -> [f64; P] {
+        std::array::from_fn(|k| slopes[k] * if k == ONSET { ONSET_UNIT } else { parameters[k] })
+    }
+
+    /// A place within the bounds, each coordinate a part of the way from its least to its largest value.
+    #[must_use]
+    pub fn at_parts(&self, parts: [f64; P]) -> [f64; P] {
+        let bounds = self.coordinate_bounds();
+        std::array::from_fn(|k| bounds[k][0] + parts[k] * (bounds[k][1] - bounds[k][0]))
+    }
+}
+
+/// The material of coordinates; the inner contact and the reading are those of another.
+#[must_use]
+pub fn material_at(base: &RodMaterial, coordinates: [f64; P]) -> RodMaterial {
+    base.with_parameters(RodSpace::parameters(coordinates))
+}
