@@ -21,7 +21,9 @@ impl<const P: usize> Residuals<P> {
         self.values.push(value);
         self.slopes.push(slopes);
     }
-    fn cost(&self) -> f64 {
+    /// Sum of squares.
+    #[must_use]
+    pub fn cost(&self) -> f64 {
         self.values.iter().map(|r| r * r).sum()
     }
     /// `JᵀJ`.
@@ -56,6 +58,8 @@ pub struct LeastSquaresFit<const P: usize> {
     pub parameters: [f64; P],
     /// Sum of squares.
     pub cost: f64,
+    /// That where the best start began.
+    pub start_cost: f64,
     /// Singular values of the Jacobian, ascending: how much the residuals change for a change by one unit, a factor e of a logarithm.
     pub singular_values: [f64; P],
     /// The combinations of coordinates that belong to them.
@@ -135,6 +139,7 @@ pub fn fit<const P: usize, E: Send>(
     Ok(Some(LeastSquaresFit {
         parameters: best.place,
         cost: best.cost,
+        start_cost: best.start_cost,
         singular_values: squares.map(|square| square.max(0.0).sqrt()),
         combinations,
         uncertainty,
@@ -153,6 +158,7 @@ struct Descent<const P: usize> {
     place: [f64; P],
     here: Residuals<P>,
     cost: f64,
+    start_cost: f64,
     evaluations: usize,
 }
 
@@ -172,7 +178,8 @@ fn descend<const P: usize, E>(
         Ok(found)
     };
     let Some(mut here) = at(&place)? else { return Ok(None) };
-    let mut cost = here.cost();
+    let start_cost = here.cost();
+    let mut cost = start_cost;
     let mut damping = FIRST_DAMPING;
     let mut evaluations = 1;
     let mut system = SmallSystem::default();
@@ -214,7 +221,7 @@ fn descend<const P: usize, E>(
             _ => damping *= 5.0,
         }
     }
-    Ok(Some(Descent { place, here, cost, evaluations }))
+    Ok(Some(Descent { place, here, cost, start_cost, evaluations }))
 }
 
 #[cfg(test)]

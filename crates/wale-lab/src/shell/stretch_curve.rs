@@ -1,9 +1,11 @@
 //! What a stretch test measures.
 
+use serde::{Deserialize, Serialize};
+
 use super::error::{ShellError, positive};
 
 /// One point of a stretch test.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StretchPoint {
     /// Stretch `l/l̄ − 1` \[–\].
     pub stretch: f64,

@@ -1,11 +1,18 @@
 //! Yarns fitted to the stretch of a fabric [Sperl2022, section 7.3].
 
+pub mod gradients;
+pub mod journal;
 mod objective;
+pub mod problem;
+mod progress;
 mod pull;
+mod sequence;
 mod space;
+pub mod swarm;
 mod target;
 
-pub use objective::{YarnFitError, add_residuals, errors};
+pub use objective::{BendingTarget, YarnFitError, errors};
+pub use progress::{Progress, Step};
 pub use pull::{Answer, PullSettings, pull};
-pub use space::{RodSpace, material_at};
+pub use space::RodSpace;
 pub use target::Target;

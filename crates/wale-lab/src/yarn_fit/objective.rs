@@ -5,6 +5,18 @@ use serde::{Deserialize, Serialize};
 use super::pull::Answer;
 use super::target::Target;
 use crate::least_squares::Residuals;
+use crate::yarn_tile::{BendingAnswer, RodParameter};
+
+/// A bending stiffness that the tile should have.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BendingTarget {
+    /// Direction of the curvature from the weft \[rad\].
+    pub angle: f64,
+    /// Stiffness \[N·m\].
+    pub stiffness: f64,
+    /// Curvature to which the tile is bent both ways \[1/m\].
+    pub curvature: f64,
+}
 
 /// Errors as [Sperl2022, Fig. 15] shows them, over the values at the end of comfort \[–\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -43,6 +55,20 @@ pub fn add_residuals<const P: usize>(
             let slope = answer.compression_slope.map(|d| factor * d);
             out.push(factor * (answer.point.compression - c), to_coordinates(slope));
         }
+    }
+}
+
+/// Residuals of bending stiffnesses, over their targets [Sperl2022, section 9.1].
+pub fn add_bending_residuals(
+    targets: &[BendingTarget],
+    answers: &[BendingAnswer],
+    to_coordinates: impl Fn([f64; RodParameter::COUNT]) -> [f64; RodParameter::COUNT],
+    out: &mut Residuals<{ RodParameter::COUNT }>,
+) {
+    let share = (1.0 / targets.len().max(1) as f64).sqrt();
+    for (target, answer) in targets.iter().zip(answers) {
+        let factor = share / target.stiffness;
+        out.push(factor * (answer.stiffness - target.stiffness), to_coordinates(answer.slope.map(|d| factor * d)));
     }
 }
 

@@ -1,12 +1,15 @@
 //! A tile pulled along one direction, free to narrow: what a fit compares with a measured curve.
 
+use serde::{Deserialize, Serialize};
+
 use crate::shell::StretchPoint;
 use crate::yarn_tile::{
     CoarseDeformation, EquilibriumSettings, RodMaterial, RodParameter, TileError, TileSolver, YarnTile,
 };
 
 /// A point of a uniform stretch with its derivatives by `P` numbers of the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "[f64; P]: Serialize + serde::de::DeserializeOwned")]
 pub struct Answer<const P: usize> {
     /// Stretch, first Piola-Kirchhoff stress \[N/m\], compression.
     pub point: StretchPoint,
@@ -50,7 +53,6 @@ pub fn pull(
     with_slopes: bool,
     settings: &PullSettings,
 ) -> Result<Vec<Answer<{ RodParameter::COUNT }>>, TileError> {
-    let mut iterations = 0;
     let mut solver = TileSolver::free_compression(tile, material, settings.equilibrium)?;
     let mut found = solver.solve(&CoarseDeformation::stretched(angle, 0.0, 0.0))?;
     let (mut from, mut answers) = (0.0, Vec::with_capacity(stretches.len()));
@@ -60,7 +62,6 @@ pub fn pull(
             let stretch = from + (to - from) * f64::from(step) / f64::from(steps);
             let compression = found.deformation.compression();
             found = solver.solve(&CoarseDeformation::stretched(angle, stretch, compression))?;
-            iterations += found.iterations;
         }
         from = to;
         if found.residual > settings.accepted {
@@ -74,9 +75,6 @@ pub fn pull(
             (stress_slope, compression_slope) = (slopes.stress, slopes.compression);
         }
         answers.push(Answer { point, stress_slope, compression_slope });
-    }
-    if std::env::var("IT").is_ok() {
-        println!("iterations {iterations}");
     }
     Ok(answers)
 }

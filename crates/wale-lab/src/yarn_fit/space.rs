@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::yarn_tile::{RodMaterial, RodParameter};
+use crate::yarn_tile::RodParameter;
 
 /// Number of parameters.
 const P: usize = RodParameter::COUNT;
@@ -82,10 +82,4 @@ impl RodSpace {
         let bounds = self.coordinate_bounds();
         std::array::from_fn(|k| bounds[k][0] + parts[k] * (bounds[k][1] - bounds[k][0]))
     }
-}
-
-/// The material of coordinates; the inner contact and the reading are those of another.
-#[must_use]
-pub fn material_at(base: &RodMaterial, coordinates: [f64; P]) -> RodMaterial {
-    base.with_parameters(RodSpace::parameters(coordinates))
 }

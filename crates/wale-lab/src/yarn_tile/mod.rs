@@ -26,6 +26,6 @@ pub use material::RodMaterial;
 pub use of_structure::{StructureError, tile_of_chart, tile_of_draft};
 pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
 pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
-pub use sensitivity::{EquilibriumSlopes, RodParameter};
+pub use sensitivity::{BendingAnswer, EquilibriumSlopes, RodParameter, bending_answer};
 pub use stress::{CoarseStress, bending_stiffness};
 pub use tile::{Edge, TileFault, YarnTile};

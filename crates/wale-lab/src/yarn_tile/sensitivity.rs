@@ -3,11 +3,14 @@
 use wale::energy::{ContactPhase, Element, RodBending, RodContact, RodStretch};
 use wale_numerics::block_matrix::SLOTS;
 
-use super::coarse::times;
-use super::equilibrium::{TileError, TileSolver};
+use serde::{Deserialize, Serialize};
+
+use super::coarse::{CoarseDeformation, times};
+use super::equilibrium::{EquilibriumSettings, TileError, TileSolver};
 use super::kinds::Image;
 use super::material::RodMaterial;
 use super::system::TileSystem;
+use super::tile::YarnTile;
 
 /// A number of a material that a fit may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +65,42 @@ pub struct EquilibriumSlopes {
     pub compression: [f64; RodParameter::COUNT],
     /// Whether the equilibrium is a minimum of the energy. If not, the second derivatives were shifted to find these.
     pub stable: bool,
+}
+
+/// A bending stiffness with its derivatives.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BendingAnswer {
+    /// Stiffness \[N·m\].
+    pub stiffness: f64,
+    /// Derivatives by the numbers of the material.
+    pub slope: [f64; RodParameter::COUNT],
+}
+
+/// As [`super::bending_stiffness`], with derivatives: at rest the energy changes with a number of the material as if nothing moved.
+///
+/// # Errors
+/// As there.
+pub fn bending_answer(
+    tile: &YarnTile,
+    material: &RodMaterial,
+    settings: EquilibriumSettings,
+    flat: &CoarseDeformation,
+    curvature: f64,
+) -> Result<BendingAnswer, TileError> {
+    let mut solver = TileSolver::new(tile, material, settings)?;
+    let (mut stiffness, mut slope) = (0.0, [0.0; RodParameter::COUNT]);
+    // Back to the flat tile before it is bent the other way.
+    for (curvature_now, factor) in [(0.0, -2.0), (curvature, 1.0), (0.0, 0.0), (-curvature, 1.0)] {
+        let found = solver.solve(&flat.bent(curvature_now))?;
+        if !found.converged {
+            return Err(TileError::NoEquilibrium { residual: found.residual });
+        }
+        let factor = factor / (curvature * curvature);
+        stiffness += factor * found.energy_density;
+        let energies = solver.system.energy_by_parameters(&solver.displacement);
+        slope.iter_mut().zip(energies).for_each(|(s, e)| *s += factor * e / tile.area());
+    }
+    Ok(BendingAnswer { stiffness, slope })
 }
 
 /// A motion of the whole tile: of its vertices, and of its plane.
@@ -204,17 +243,54 @@ impl TileSystem {
             let wider = element.gradient_by_outer_radius(&q);
             self.add_work(stencil, &wider, motions, &mut work[RodParameter::OuterRadius as usize]);
         }
-        // Anchors are a multiple of (k_b/R² + 10⁻³ k_s1)/R.
-        let radius = self.material.contact[0].radius;
-        let unit = self.anchor * radius / self.material.force_unit();
-        let by_radius = -unit * (self.material.force_unit() / radius + 2.0 * self.material.bending / radius.powi(3));
+        let by_anchor = self.anchor_by_parameters();
         for (k, motion) in motions.iter().enumerate() {
             let pull: f64 = motion.vertices.iter().zip(displacement).map(|(d, u)| d * u).sum();
-            work[RodParameter::SoftStretch as usize][k] += 1e-3 * unit / radius * pull;
-            work[RodParameter::Bending as usize][k] += unit / radius.powi(3) * pull;
-            work[RodParameter::OuterRadius as usize][k] += by_radius / radius * pull;
+            work.iter_mut().zip(by_anchor).for_each(|(work, anchor)| work[k] += anchor * pull);
         }
         work
+    }
+
+    /// How the energy \[J\] changes with each number of the material, the vertices held.
+    fn energy_by_parameters(&self, displacement: &[f64]) -> [f64; RodParameter::COUNT] {
+        let mut sums = [0.0; RodParameter::COUNT];
+        for (element, stencil) in self.stretch.elements.iter().zip(&self.stretch.stencils) {
+            let q = self.positions(stencil, displacement);
+            let energy = |soft, stiff| RodStretch { soft, stiff, ..*element }.gradient(&q).0;
+            sums[RodParameter::SoftStretch as usize] += energy(1.0, 0.0);
+            sums[RodParameter::StiffStretch as usize] += energy(0.0, 1.0);
+            sums[RodParameter::Onset as usize] += element.energy_by_onset(&q);
+        }
+        for (element, stencil) in self.bending.elements.iter().zip(&self.bending.stencils) {
+            let q = self.positions(stencil, displacement);
+            sums[RodParameter::Bending as usize] += RodBending { stiffness: 1.0, ..*element }.gradient(&q).0;
+        }
+        for (element, stencil) in self.contact.elements.iter().zip(&self.contact.stencils) {
+            let q = self.positions(stencil, displacement);
+            if !element.acts(&q) {
+                continue;
+            }
+            let [outer, inner] = element.phases;
+            let phases = [ContactPhase { stiffness: 1.0, ..outer }, ContactPhase { stiffness: 0.0, ..inner }];
+            sums[RodParameter::OuterContact as usize] += RodContact { phases, ..*element }.gradient(&q).0;
+            sums[RodParameter::OuterRadius as usize] += element.energy_by_outer_radius(&q);
+        }
+        let square: f64 = displacement.iter().map(|u| u * u).sum();
+        let by_anchor = self.anchor_by_parameters();
+        sums.iter_mut().zip(by_anchor).for_each(|(sum, anchor)| *sum += 0.5 * anchor * square);
+        sums
+    }
+
+    /// How the anchors' stiffness, a multiple of `(k_b/R² + 10⁻³ k_s1)/R`, changes with each number of the material.
+    fn anchor_by_parameters(&self) -> [f64; RodParameter::COUNT] {
+        let (radius, force) = (self.material.contact[0].radius, self.material.force_unit());
+        let multiple = self.anchor * radius / force;
+        let mut by = [0.0; RodParameter::COUNT];
+        by[RodParameter::SoftStretch as usize] = multiple * 1e-3 / radius;
+        by[RodParameter::Bending as usize] = multiple / radius.powi(3);
+        by[RodParameter::OuterRadius as usize] =
+            -multiple * (force / radius + 2.0 * self.material.bending / radius.powi(3)) / radius;
+        by
     }
 
     fn add_work<const K: usize, const N: usize>(

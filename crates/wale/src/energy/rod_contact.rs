@@ -146,6 +146,18 @@ impl RodContact {
         sum
     }
 
+    /// How the energy \[J\] changes with the radius of the outer phase \[N\].
+    #[must_use]
+    pub fn energy_by_outer_radius(&self, q: &[f64; 12]) -> f64 {
+        let ContactPhase { radius, stiffness } = self.phases[0];
+        let mut energy = 0.0;
+        Pair::new(q, 2.0 * radius).for_each(|_, weight, _, square| {
+            let x = 0.5 * square.sqrt() / radius;
+            energy -= weight * self.rest_area * stiffness * self.reading.profile(x)[1] * x / radius;
+        });
+        energy
+    }
+
     /// How the gradient \[N\] changes with the radius of the outer phase \[N/m\].
     #[must_use]
     pub fn gradient_by_outer_radius(&self, q: &[f64; 12]) -> [f64; 12] {
@@ -325,6 +337,13 @@ mod tests {
                 let (up, down, slope) = (at(0.5 + 1e-6), at(0.5 - 1e-6), element.gradient_by_outer_radius(&q));
                 let size = slope.iter().fold(0.0f64, |m, s| m.max(s.abs()));
                 assert!(size > 0.0, "{reading:?} {apart}");
+                let energy = |radius: f64| {
+                    let outer = ContactPhase { radius, ..element.phases[0] };
+                    RodContact { phases: [outer, element.phases[1]], ..element }.gradient(&q).0
+                };
+                let (expected, found) =
+                    ((energy(0.5 + 1e-6) - energy(0.5 - 1e-6)) / 2e-6, element.energy_by_outer_radius(&q));
+                assert!((expected - found).abs() < 1e-6 * found.abs(), "{expected} {found}");
                 assert!(slope.iter().enumerate().all(|(i, s)| ((up[i] - down[i]) / 2e-6 - s).abs() < 1e-5 * size));
             }
         }

@@ -39,6 +39,14 @@ impl RodStretch {
         }
     }
 
+    /// How the energy \[J\] changes with the onset `ε̄`.
+    #[must_use]
+    pub fn energy_by_onset(&self, q: &[f64; 6]) -> f64 {
+        let d = sub(point(q, 3), point(q, 0));
+        let over = dot(d, d).sqrt() / self.rest_length - 1.0 - self.onset;
+        if over > 0.0 { self.rest_length * (self.soft - self.stiff) * over } else { 0.0 }
+    }
+
     /// How the gradient \[N\] changes with the onset `ε̄`.
     #[must_use]
     pub fn gradient_by_onset(&self, q: &[f64; 6]) -> [f64; 6] {
@@ -128,6 +136,9 @@ mod tests {
             let at = |onset: f64| RodStretch { onset, ..ELEMENT }.gradient(&q).1;
             let (up, down, slope) = (at(ELEMENT.onset + 1e-6), at(ELEMENT.onset - 1e-6), ELEMENT.gradient_by_onset(&q));
             assert!(slope.iter().enumerate().all(|(i, s)| ((up[i] - down[i]) / 2e-6 - s).abs() < 1e-6));
+            let energy = |onset: f64| RodStretch { onset, ..ELEMENT }.gradient(&q).0;
+            let expected = (energy(ELEMENT.onset + 1e-6) - energy(ELEMENT.onset - 1e-6)) / 2e-6;
+            assert!((expected - ELEMENT.energy_by_onset(&q)).abs() < 1e-6);
             assert_eq!(slope.iter().any(|s| s.abs() > 1.0), strain > ELEMENT.onset);
         }
     }

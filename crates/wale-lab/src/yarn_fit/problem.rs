@@ -1,0 +1,159 @@
+//! What is to be fitted, and the question that a fit asks again and again: what does the fabric do with these numbers?
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::objective::{BendingTarget, add_bending_residuals, add_residuals};
+use super::pull::{Answer, PullSettings, pull};
+use super::space::RodSpace;
+use super::target::Target;
+use crate::least_squares::Residuals;
+use crate::yarn_tile::{
+    BendingAnswer, CoarseDeformation, RestShapeSettings, RodMaterial, RodParameter, YarnTile, bending_answer,
+    estimate_rest_shapes,
+};
+
+/// Number of parameters.
+pub const P: usize = RodParameter::COUNT;
+
+/// A yarn to be fitted.
+#[derive(Clone, Debug)]
+pub struct YarnProblem {
+    /// The tile as it was registered.
+    pub tile: YarnTile,
+    /// What of the material is not fitted: the inner contact and how contact is read.
+    pub base: RodMaterial,
+    /// Which numbers are fitted, and their bounds.
+    pub space: RodSpace,
+    /// Uniform stretches of the fabric.
+    pub targets: Vec<Target>,
+    /// Bending stiffnesses of the fabric, empty if they are not fitted.
+    pub bending: Vec<BendingTarget>,
+    /// Whether rest shapes are estimated; if not, yarns are at rest as they were registered.
+    pub rest_shapes: bool,
+    /// How.
+    pub rest: RestShapeSettings,
+    /// How tiles are pulled.
+    pub pull: PullSettings,
+}
+
+/// A question: what does the tile do with these numbers?
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Question {
+    /// Numbers with which rest shapes are found.
+    pub rest: [f64; P],
+    /// Numbers with which the tile is then pulled.
+    pub at: [f64; P],
+    /// Points along each curve.
+    pub samples: usize,
+    /// Whether derivatives are wanted.
+    pub slopes: bool,
+}
+
+impl Question {
+    /// Everything with the same numbers.
+    #[must_use]
+    pub fn of(at: [f64; P], samples: usize, slopes: bool) -> Self {
+        Self { rest: at, at, samples, slopes }
+    }
+}
+
+/// What the tile does.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Evaluation {
+    /// Stress and compression along each target's points.
+    pub stretch: Vec<Vec<Answer<P>>>,
+    /// Bending stiffnesses.
+    pub bending: Vec<BendingAnswer>,
+}
+
+/// Somebody who answers questions: `None` where the tile cannot be tested.
+pub trait Answers: Sync {
+    /// Why a question is not answered now.
+    type Unanswered: Send;
+    /// Answers.
+    ///
+    /// # Errors
+    /// If it is not answered now.
+    fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Self::Unanswered>;
+}
+
+impl YarnProblem {
+    /// The tile with the rest shapes of some numbers; `None` if there are none.
+    #[must_use]
+    pub fn rested(&self, parameters: &[f64; P]) -> Option<YarnTile> {
+        if !self.rest_shapes {
+            return Some(self.tile.at_rest_as_it_lies());
+        }
+        let material = self.base.with_parameters(*parameters);
+        estimate_rest_shapes(&self.tile, &material, &self.rest).ok().map(|found| found.tile)
+    }
+
+    /// Answers a question with a tile whose rest shapes were found already.
+    #[must_use]
+    pub fn evaluate(&self, rested: &YarnTile, question: &Question) -> Option<Evaluation> {
+        let material = self.base.with_parameters(question.at);
+        let one = |target: &Target| {
+            let stretches = target.resampled(question.samples).stretches();
+            pull(rested, &material, target.angle, &stretches, question.slopes, &self.pull).ok()
+        };
+        let bend = |target: &BendingTarget| {
+            let flat = CoarseDeformation::stretched(target.angle, 0.0, 0.0);
+            bending_answer(rested, &material, self.pull.equilibrium, &flat, target.curvature).ok()
+        };
+        Some(Evaluation {
+            stretch: self.targets.par_iter().map(one).collect::<Option<_>>()?,
+            bending: self.bending.par_iter().map(bend).collect::<Option<_>>()?,
+        })
+    }
+
+    /// How far an evaluation is from the targets, with derivatives by the coordinates.
+    #[must_use]
+    pub fn residuals(&self, question: &Question, evaluation: &Evaluation) -> Residuals<P> {
+        let mut out = Residuals::default();
+        let by_coordinates = |slopes| RodSpace::by_coordinates(&question.at, slopes);
+        for (target, answers) in self.targets.iter().zip(&evaluation.stretch) {
+            add_residuals(&target.resampled(question.samples), answers, by_coordinates, &mut out);
+        }
+        add_bending_residuals(&self.bending, &evaluation.bending, by_coordinates, &mut out);
+        out
+    }
+}
+
+/// A problem that is answered here and now; rest shapes are kept for the next question with the same.
+#[derive(Debug)]
+pub struct Here<'a> {
+    problem: &'a YarnProblem,
+    rested: Mutex<HashMap<[u64; P], Option<Arc<YarnTile>>>>,
+}
+
+impl<'a> Here<'a> {
+    /// Answers questions about a problem.
+    #[must_use]
+    pub fn new(problem: &'a YarnProblem) -> Self {
+        Self { problem, rested: Mutex::new(HashMap::new()) }
+    }
+
+    /// The tile with the rest shapes of some numbers.
+    #[must_use]
+    pub fn rested(&self, parameters: &[f64; P]) -> Option<Arc<YarnTile>> {
+        let key = parameters.map(f64::to_bits);
+        let known = self.rested.lock().expect("nobody panics with it").get(&key).cloned();
+        known.unwrap_or_else(|| {
+            let found = self.problem.rested(parameters).map(Arc::new);
+            self.rested.lock().expect("nobody panics with it").insert(key, found.clone());
+            found
+        })
+    }
+}
+
+impl Answers for Here<'_> {
+    type Unanswered = std::convert::Infallible;
+
+    fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Self::Unanswered> {
+        Ok(self.rested(&question.rest).and_then(|tile| self.problem.evaluate(&tile, question)))
+    }
+}
