@@ -1,87 +1,93 @@
-//! Experiment.
-use rayon::prelude::*;
+//! Experiment: try_fit FABRIC.toml [PREDICT.toml ...]
+use std::path::Path;
 use std::time::Instant;
-use wale::pattern::Chart;
-use wale::scene::{Scene, text_of_preset};
-use wale_lab::shell::StretchCurve;
+use wale_lab::fabric_file::FabricFile;
+use wale_lab::fabric_fit::fit_fabric;
+use wale_lab::shell::membrane_fit::MembraneFitSettings;
 use wale_lab::yarn_fit::gradients::*;
+use wale_lab::yarn_fit::of_fabric::*;
 use wale_lab::yarn_fit::problem::*;
 use wale_lab::yarn_fit::swarm::*;
 use wale_lab::yarn_fit::*;
-use wale_lab::yarn_tile::*;
+
+fn load(path: &str) -> YarnProblem {
+    let fabric = FabricFile::read(Path::new(path)).unwrap_or_else(|e| panic!("{e}"));
+    let shell = fit_fabric(&fabric, &MembraneFitSettings { targets: 8, ..Default::default() }).unwrap();
+    println!("shell {:.3} {:.3}", shell.membrane.force_error, shell.membrane.compression_error);
+    let p0 = yarn_problem(&fabric, &shell, Ablation::default()).unwrap_or_else(|e| panic!("{e}"));
+    let num = |n: &str| std::env::var(n).map_or(1.0, |x| x.parse::<f64>().unwrap());
+    let (a, b, c) = (num("SX"), num("SY"), num("SZ"));
+    let t = &p0.tile;
+    let tile = wale_lab::yarn_tile::YarnTile::new([a * t.periods()[0], b * t.periods()[1]], t.radius(), t.vertices().iter().map(|x| [a * x[0], b * x[1], c * x[2]]).collect(), t.edges().to_vec(), t.rest_lengths().to_vec(), t.rest_curvatures().to_vec()).unwrap().at_rest_as_it_lies();
+    let mut p = problem(tile, p0.targets.clone(), vec![], None, Ablation::default());
+    println!("yarn length {} ", p.tile.lengths().iter().sum::<f64>());
+    match std::env::var("READING").as_deref() { Ok("b") => p.base.reading = wale::energy::ContactReading::Barrier, Ok("s") => p.base.reading = wale::energy::ContactReading::BarrierOfSquare, _ => {} }
+    if let Ok(a) = std::env::var("ANCHOR") { p.pull.equilibrium.anchor = a.parse().unwrap(); }
+    if let Ok(a) = std::env::var("LATE") { p.rest.late_rounds = a.parse().unwrap(); }
+    p
+}
+
+fn show(problem: &YarnProblem, here: &Here, at: [f64; 6]) {
+    let q = Question::of(at, 8, false);
+    let Ok(e) = here.answer(&q);
+    let Some(e) = e else {
+        println!("cannot be tested");
+        return;
+    };
+    let t: Vec<Target> = problem.targets.iter().map(|t| t.resampled(8)).collect();
+    for (t, a) in t.iter().zip(&e.stretch) {
+        for (t, a) in t.points.iter().zip(a) {
+            println!("   {:.3}: {:8.2} {:8.2} N/m   {:.3} {:.3}", t[0], t[1], a.point.force, t[2], a.point.compression);
+        }
+        println!("   comfort to {:.3}", problem.targets[0].comfort);
+    }
+    println!("{:?}", errors(&t, &e.stretch));
+}
 
 fn main() {
-    let scene = Scene::from_text(&text_of_preset(wale::scene::schema::PresetName::WorstedWool), "p").unwrap();
-    let chart = match std::env::args().nth(1).as_deref() {
-        Some("garter") => Chart::garter(),
-        Some("rib") => Chart::rib(1, 1).unwrap(),
-        _ => Chart::stockinette(),
-    };
-    let tile = tile_of_chart(&chart, &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
-    let r = contact_radius(&tile);
-    println!("{} vertices, periods {:?}, R {} R_est {}", tile.vertex_count(), tile.periods(), tile.radius(), r);
-    let ks2 = 100.0;
-    let kc: f64 = std::env::var("KC").map_or(2e4, |x| x.parse().unwrap());
-    let base = RodMaterial {
-        soft_stretch: 5.0,
-        stiff_stretch: ks2,
-        onset: 0.06,
-        bending: 0.05 * 0.25 * ks2 * r * r,
-        contact: [
-            wale::energy::ContactPhase { radius: 1.1 * r, stiffness: kc },
-            wale::energy::ContactPhase { radius: 0.25 * r, stiffness: 1e4 },
-        ],
-        reading: Default::default(),
-    };
-    let space = RodSpace::paper(ks2, r).within(RodParameter::OuterContact, [1e-5 * ks2 / r, 1e1 * ks2 / r]);
-    let mut problem = YarnProblem {
-        tile: tile.clone(),
-        base,
-        space,
-        targets: vec![],
-        bending: vec![],
-        rest_shapes: true,
-        rest: Default::default(),
-        pull: Default::default(),
-    };
-    let truth_tile = problem.rested(&base.parameters()).unwrap();
-    let n = 8;
-    problem.targets = [(0.0, 0.5), (std::f64::consts::FRAC_PI_4, 0.4), (std::f64::consts::FRAC_PI_2, 0.4)]
-        .par_iter()
-        .map(|&(angle, most)| {
-            let s: Vec<f64> = (1..=n).map(|k| most * k as f64 / n as f64).collect();
-            let a = pull(&truth_tile, &base, angle, &s, false, &problem.pull).unwrap();
-            let comfort = a[n * 2 / 3].point.force;
-            Target::new(&StretchCurve { angle, points: a.iter().map(|x| x.point).collect() }, true, comfort)
-        })
-        .collect();
-    let truth = RodSpace::coordinates(base.parameters());
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let problem = load(&args[0]);
+    println!(
+        "{} vertices periods {:?} radius {} R_est {}",
+        problem.tile.vertex_count(),
+        problem.tile.periods(),
+        problem.tile.radius(),
+        problem.base.contact[0].radius
+    );
+    println!("{:?}", problem.space);
     let t0 = Instant::now();
     let tell = |s: &Step| {
-        if s.evaluations % 8 == 0 {
+        if s.evaluations % 16 == 0 {
             println!("{} best {:.3e} {:.1}s", s.evaluations, s.best, t0.elapsed().as_secs_f64())
         }
     };
     let progress = Progress::new(&tell);
     let here = Here::new(&problem);
-    let Ok(found) = (if std::env::args().nth(2).is_some() {
+    let mut g = GradientSettings::default();
+    if let Ok(s) = std::env::var("SCREEN") {
+        g.screened = s.parse().unwrap();
+    }
+    let Ok(found) = (if std::env::var("SWARM").is_ok() {
         fit_by_swarm(&problem, &here, &SwarmSettings::default(), &progress)
     } else {
-        fit_by_gradients(&problem, &here, &GradientSettings::default(), &progress)
+        fit_by_gradients(&problem, &here, &g, &progress)
     });
     let found = found.unwrap();
+    let at = RodSpace::parameters(found.coordinates);
     println!(
-        "{:.1}s cost {:.3e} evals {} off {:?}",
+        "{:.1}s cost {:.3e} evals {} at {at:?}",
         t0.elapsed().as_secs_f64(),
         found.cost,
-        progress.now().evaluations,
-        found.coordinates.iter().zip(&truth).map(|(a, b)| format!("{:.3}", a - b)).collect::<Vec<_>>()
+        progress.now().evaluations
     );
     if let Some(l) = &found.least_squares {
         println!("uncertainty {:?}", l.uncertainty);
     }
-    let q = Question::of(RodSpace::parameters(found.coordinates), 20, false);
-    let Ok(e) = here.answer(&q);
-    let t: Vec<Target> = problem.targets.iter().map(|t| t.resampled(20)).collect();
-    println!("{:?}", errors(&t, &e.unwrap().stretch));
+    show(&problem, &here, at);
+    for other in &args[1..] {
+        println!("--- {other}");
+        let p = load(other);
+        let p = YarnProblem { base: problem.base, ..p };
+        show(&p, &Here::new(&p), at);
+    }
 }

@@ -3,6 +3,7 @@
 pub mod gradients;
 pub mod journal;
 mod objective;
+pub mod of_fabric;
 pub mod problem;
 mod progress;
 mod pull;
