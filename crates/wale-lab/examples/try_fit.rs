@@ -14,20 +14,45 @@ fn load(path: &str) -> YarnProblem {
     let fabric = FabricFile::read(Path::new(path)).unwrap_or_else(|e| panic!("{e}"));
     let shell = fit_fabric(&fabric, &MembraneFitSettings { targets: 8, ..Default::default() }).unwrap();
     println!("shell {:.3} {:.3}", shell.membrane.force_error, shell.membrane.compression_error);
-    let p0 = yarn_problem(&fabric, &shell, Ablation::default()).unwrap_or_else(|e| panic!("{e}"));
+    let p0 =
+        yarn_problem(&fabric, &shell, Ablation { nothing_holds: std::env::var("FREE").is_ok(), ..Default::default() })
+            .unwrap_or_else(|e| panic!("{e}"));
     let num = |n: &str| std::env::var(n).map_or(1.0, |x| x.parse::<f64>().unwrap());
     let (a, b, c) = (num("SX"), num("SY"), num("SZ"));
     let t = &p0.tile;
-    let tile = wale_lab::yarn_tile::YarnTile::new([a * t.periods()[0], b * t.periods()[1]], t.radius(), t.vertices().iter().map(|x| [a * x[0], b * x[1], c * x[2]]).collect(), t.edges().to_vec(), t.rest_lengths().to_vec(), t.rest_curvatures().to_vec()).unwrap().at_rest_as_it_lies();
-    let mut p = problem(tile, p0.targets.clone(), vec![], None, Ablation::default());
+    let tile = wale_lab::yarn_tile::YarnTile::new(
+        [a * t.periods()[0], b * t.periods()[1]],
+        t.radius(),
+        t.vertices().iter().map(|x| [a * x[0], b * x[1], c * x[2]]).collect(),
+        t.edges().to_vec(),
+        t.rest_lengths().to_vec(),
+        t.rest_curvatures().to_vec(),
+    )
+    .unwrap()
+    .at_rest_as_it_lies();
+    let mut p = problem(
+        tile,
+        p0.targets.clone(),
+        vec![],
+        None,
+        Ablation { nothing_holds: std::env::var("FREE").is_ok(), ..Default::default() },
+    );
     println!("yarn length {} ", p.tile.lengths().iter().sum::<f64>());
-    match std::env::var("READING").as_deref() { Ok("b") => p.base.reading = wale::energy::ContactReading::Barrier, Ok("s") => p.base.reading = wale::energy::ContactReading::BarrierOfSquare, _ => {} }
-    if let Ok(a) = std::env::var("ANCHOR") { p.pull.equilibrium.anchor = a.parse().unwrap(); }
-    if let Ok(a) = std::env::var("LATE") { p.rest.late_rounds = a.parse().unwrap(); }
+    match std::env::var("READING").as_deref() {
+        Ok("b") => p.base.reading = wale::energy::ContactReading::Barrier,
+        Ok("s") => p.base.reading = wale::energy::ContactReading::BarrierOfSquare,
+        _ => {}
+    }
+    if let Ok(a) = std::env::var("ANCHOR") {
+        p.pull.equilibrium.anchor = a.parse().unwrap();
+    }
+    if let Ok(a) = std::env::var("LATE") {
+        p.rest.late_rounds = a.parse().unwrap();
+    }
     p
 }
 
-fn show(problem: &YarnProblem, here: &Here, at: [f64; 6]) {
+fn show(problem: &YarnProblem, here: &Here, at: [f64; 7]) {
     let q = Question::of(at, 8, false);
     let Ok(e) = here.answer(&q);
     let Some(e) = e else {

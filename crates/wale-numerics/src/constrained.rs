@@ -90,9 +90,9 @@ impl ConstrainedSystem {
         (self.shift, self.spring) = (0.0, 0.0);
     }
 
-    /// Adds a number to the diagonal of `H`.
-    pub fn add_diagonal(&mut self, value: f64) {
-        self.matrix.add_diagonal(&self.unknown, value);
+    /// Adds numbers, one a slot, to the diagonal of `H`.
+    pub fn add_diagonal(&mut self, values: &[f64]) {
+        self.matrix.add_diagonal(values, 1.0);
     }
 
     /// Factors it with `shift` times the identity, on the border times `weight` too, added; whether the shifted system is

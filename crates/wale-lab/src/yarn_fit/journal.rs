@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
 use super::problem::{Answers, Evaluation, Question};
 
@@ -20,6 +21,31 @@ pub struct Entry {
     pub question: Question,
     /// What was answered.
     pub answer: Option<Evaluation>,
+}
+
+/// The first line of a journal: of which problem its answers are.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+struct Head {
+    problem: String,
+}
+
+/// Why there is no journal.
+#[derive(Debug, Error)]
+pub enum JournalError {
+    /// It cannot be read or written.
+    #[error("{}: {error}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        error: io::Error,
+    },
+    /// Its answers are of another problem.
+    #[error("{}: its answers are of another fabric or of other settings", .path.display())]
+    Other {
+        /// The file.
+        path: PathBuf,
+    },
 }
 
 /// Answers by their questions, kept in a file of JSON lines.
@@ -35,27 +61,41 @@ fn key(question: &Question) -> String {
 }
 
 impl Journal {
-    /// Opens the journal, with all entries that are whole: the last line of a fit that was killed may not be, and is cut off.
+    /// Opens the journal of a problem, told by its fingerprint, with all entries that are whole: the last line of a fit that was killed
+    /// may not be, and is cut off.
     ///
     /// # Errors
-    /// If the file cannot be read or written.
-    pub fn open(path: &Path) -> io::Result<Self> {
-        let text = match std::fs::read_to_string(path) {
-            Ok(text) => text,
+    /// [`JournalError`].
+    pub fn open(path: &Path, problem: &str) -> Result<Self, JournalError> {
+        let failed = |error: io::Error| JournalError::File { path: path.to_owned(), error };
+        let text = match std::fs::read(path) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => String::new(),
-            Err(error) => return Err(error),
+            Err(error) => return Err(failed(error)),
         };
         let mut known = HashMap::new();
+        let mut lines = text.split_inclusive('\n');
         let mut whole = 0;
-        for line in text.split_inclusive('\n') {
+        if let Some(line) = lines.next().filter(|line| line.ends_with('\n')) {
+            if serde_json::from_str::<Head>(line).ok().is_none_or(|head| head.problem != problem) {
+                return Err(JournalError::Other { path: path.to_owned() });
+            }
+            whole = line.len();
+        }
+        for line in lines {
             let Some(entry) = line.strip_suffix('\n').and_then(|line| serde_json::from_str::<Entry>(line).ok()) else {
                 break;
             };
             known.entry(key(&entry.question)).or_insert(entry.answer);
             whole += line.len();
         }
-        let file = OpenOptions::new().create(true).append(true).open(path)?;
-        file.set_len(whole as u64)?;
+        let mut file = OpenOptions::new().create(true).append(true).open(path).map_err(failed)?;
+        file.set_len(whole as u64).map_err(failed)?;
+        if whole == 0 {
+            let head = Head { problem: problem.to_owned() };
+            let line = serde_json::to_string(&head).expect("words are JSON") + "\n";
+            file.write_all(line.as_bytes()).map_err(failed)?;
+        }
         Ok(Self { known: Mutex::new(known), file: Mutex::new(file), path: path.to_owned() })
     }
 

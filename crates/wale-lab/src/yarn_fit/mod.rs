@@ -7,6 +7,7 @@ pub mod of_fabric;
 pub mod problem;
 mod progress;
 mod pull;
+pub mod run;
 mod sequence;
 mod space;
 pub mod swarm;

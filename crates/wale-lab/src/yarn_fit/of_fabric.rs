@@ -29,6 +29,8 @@ pub struct Ablation {
     pub no_rest_shapes: bool,
     /// Bending stiffnesses are fitted too.
     pub with_bending: bool,
+    /// Nothing holds the yarns, as in the paper.
+    pub nothing_holds: bool,
 }
 
 /// Why a fabric's yarn cannot be fitted.
@@ -170,6 +172,9 @@ pub fn problem(
         }
     };
     space = space.within(RodParameter::OuterContact, CONTACT.map(|factor| factor * stiff / radius));
+    if !ablation.nothing_holds {
+        space = space.with_holding();
+    }
     if ablation.one_phase {
         // Without an onset the soft phase is never reached.
         space = space.holding(RodParameter::Onset, 0.0).holding(RodParameter::SoftStretch, stiff);

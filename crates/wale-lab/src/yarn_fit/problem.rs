@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 
 use super::objective::{BendingTarget, add_bending_residuals, add_residuals};
 use super::pull::{Answer, PullSettings, pull};
@@ -20,7 +21,7 @@ use crate::yarn_tile::{
 pub const P: usize = RodParameter::COUNT;
 
 /// A yarn to be fitted.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct YarnProblem {
     /// The tile as it was registered.
     pub tile: YarnTile,
@@ -82,6 +83,16 @@ pub trait Answers: Sync {
 }
 
 impl YarnProblem {
+    /// What tells it from other problems: SHA-256 of its JSON.
+    ///
+    /// # Panics
+    /// Never: its numbers are finite.
+    #[must_use]
+    pub fn fingerprint(&self) -> String {
+        let text = serde_json::to_vec(self).expect("finite numbers are JSON");
+        Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
     /// The tile with the rest shapes of some numbers; `None` if there are none.
     #[must_use]
     pub fn rested(&self, parameters: &[f64; P]) -> Option<YarnTile> {

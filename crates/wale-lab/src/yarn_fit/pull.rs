@@ -20,7 +20,7 @@ pub struct Answer<const P: usize> {
 }
 
 /// How a tile is pulled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PullSettings {
     /// Largest step of stretch \[–\].
     pub largest_step: f64,

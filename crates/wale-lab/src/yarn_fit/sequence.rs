@@ -3,7 +3,7 @@
 use super::problem::P;
 
 /// The bases of the sequence: a prime for each parameter.
-const BASES: [usize; P] = [2, 3, 5, 7, 11, 13];
+const BASES: [usize; P] = [2, 3, 5, 7, 11, 13, 17];
 
 /// Point `k` of Halton's sequence in the unit cube: points fill it evenly, however many there are \[Halton1960\].
 #[must_use]

@@ -14,6 +14,8 @@ pub struct RodSpace {
     pub bounds: [[f64; 2]; P],
 }
 
+/// Stiffness that holds the yarns of the paper's model, which has none, in `k_b/R⁴`: less than anybody could measure.
+const LEAST_HOLDING: f64 = 1e-6;
 /// One unit of the coordinate of the onset \[–\]; the others are logarithms.
 const ONSET_UNIT: f64 = 0.05;
 const ONSET: usize = RodParameter::Onset as usize;
@@ -33,6 +35,7 @@ impl RodSpace {
                 [1e-3 * bending, 10.0 * bending],
                 [0.5 * contact_radius, 1.5 * contact_radius],
                 [1e-2, 1e2],
+                [LEAST_HOLDING * bending / contact_radius.powi(4); 2],
             ],
         }
     }
@@ -49,6 +52,13 @@ impl RodSpace {
     pub fn within(mut self, parameter: RodParameter, bounds: [f64; 2]) -> Self {
         self.bounds[parameter as usize] = bounds;
         self
+    }
+
+    /// Lets what holds the yarns be fitted too: from nothing to a yarn that is bent around its own radius.
+    #[must_use]
+    pub fn with_holding(self) -> Self {
+        let least = self.bounds[RodParameter::Holding as usize][0];
+        self.within(RodParameter::Holding, [least, least / LEAST_HOLDING])
     }
 
     /// The same bounds for coordinates.

@@ -48,7 +48,7 @@ impl Default for SwarmSettings {
 }
 
 /// Cost of a place at which the tile cannot be tested: worse than any other, and finite, since COBYLA stalls at what is not.
-const FAILED: f64 = 1e6;
+pub(super) const FAILED: f64 = 1e6;
 /// First step of COBYLA, and that at which it ends, over the bounds.
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-3;

@@ -1,5 +1,6 @@
 //! Equilibrium of a tile under a coarse deformation, by Newton's method.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use wale_numerics::block_matrix::SLOTS;
 use wale_numerics::sparse_cholesky::CholeskyError;
@@ -13,7 +14,7 @@ use super::system::TileSystem;
 use super::tile::YarnTile;
 
 /// How a tile is brought to rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EquilibriumSettings {
     /// Net force on a vertex at which it is at rest, in `k_b/R² + 10⁻³ k_s1` \[–\].
     pub tolerance: f64,
@@ -147,8 +148,7 @@ impl TileSolver {
         material.check(tile)?;
         let radius = material.contact[0].radius;
         let force = material.force_unit();
-        let mut system = TileSystem::new(tile, material, free_compression)?;
-        system.anchor = settings.anchor * force / radius;
+        let system = TileSystem::new(tile, material, settings.anchor * force / radius, free_compression)?;
         Ok(Self {
             system,
             settings,

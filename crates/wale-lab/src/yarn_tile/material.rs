@@ -1,12 +1,13 @@
 //! What a yarn is made of, as the full-contact model sees it.
 
+use serde::{Deserialize, Serialize};
 use wale::energy::{ContactPhase, ContactReading};
 
 use super::equilibrium::TileError;
 use super::tile::YarnTile;
 
 /// Mechanical parameters of the yarns of a tile [Sperl2022, section 6].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RodMaterial {
     /// Stretch stiffness `k_s1` at small stretch \[N\].
     pub soft_stretch: f64,
@@ -20,6 +21,12 @@ pub struct RodMaterial {
     pub contact: [ContactPhase; 2],
     /// How the printed contact energy is read.
     pub reading: ContactReading,
+    /// Stiffness `k_h` \[N/m²\] with which the fabric holds a piece of yarn where the coarse deformation takes it: what friction does
+    /// to yarns that stick.
+    ///
+    /// Differs from the paper: it has none, and a knit whose yarns slide freely begins to stretch with next to no force, which no
+    /// knit does that was measured. Test: `what_holds_a_yarn_is_a_spring`.
+    pub holding: f64,
 }
 
 impl RodMaterial {
@@ -38,6 +45,7 @@ impl RodMaterial {
                 ContactPhase { radius: Self::INNER_RADIUS * radius, stiffness: Self::INNER_STIFFNESS },
             ],
             reading: ContactReading::default(),
+            holding: 0.0,
         }
     }
 
@@ -74,6 +82,7 @@ impl RodMaterial {
         for (what, value) in [
             ("onset of large stretch", self.onset),
             ("bending stiffness", self.bending),
+            ("holding stiffness", self.holding),
             ("outer contact stiffness", outer.stiffness),
             ("inner contact stiffness", inner.stiffness),
         ] {

@@ -1,5 +1,7 @@
 //! Rest shapes of registered yarns: what they would be if the fabric, as it lies, were nearly at rest.
 
+use serde::{Deserialize, Serialize};
+
 use super::closest::segment_distance;
 use super::coarse::CoarseDeformation;
 use super::equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolver};
@@ -8,7 +10,7 @@ use super::neighbours::{Followers, near_pairs};
 use super::tile::YarnTile;
 
 /// How rest shapes are found.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RestShapeSettings {
     /// Resets with few iterations between them, while contacts are strong and local.
     pub early_rounds: usize,

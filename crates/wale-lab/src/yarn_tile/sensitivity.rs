@@ -27,16 +27,25 @@ pub enum RodParameter {
     OuterRadius,
     /// `k_c1` \[J/m²\].
     OuterContact,
+    /// `k_h` \[N/m²\].
+    Holding,
 }
 
 impl RodParameter {
     /// Number of them.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
     /// All, in the order of arrays.
-    pub const ALL: [Self; Self::COUNT] =
-        [Self::SoftStretch, Self::StiffStretch, Self::Onset, Self::Bending, Self::OuterRadius, Self::OuterContact];
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::SoftStretch,
+        Self::StiffStretch,
+        Self::Onset,
+        Self::Bending,
+        Self::OuterRadius,
+        Self::OuterContact,
+        Self::Holding,
+    ];
     /// What they are called in files, in the same order.
-    pub const NAMES: [&'static str; Self::COUNT] = ["k_s1", "k_s2", "onset", "k_b", "R_1", "k_c1"];
+    pub const NAMES: [&'static str; Self::COUNT] = ["k_s1", "k_s2", "onset", "k_b", "R_1", "k_c1", "k_h"];
 }
 
 impl RodMaterial {
@@ -44,15 +53,15 @@ impl RodMaterial {
     #[must_use]
     pub fn parameters(&self) -> [f64; RodParameter::COUNT] {
         let ContactPhase { radius, stiffness } = self.contact[0];
-        [self.soft_stretch, self.stiff_stretch, self.onset, self.bending, radius, stiffness]
+        [self.soft_stretch, self.stiff_stretch, self.onset, self.bending, radius, stiffness, self.holding]
     }
 
     /// The same material with these numbers.
     #[must_use]
     pub fn with_parameters(&self, parameters: [f64; RodParameter::COUNT]) -> Self {
-        let [soft_stretch, stiff_stretch, onset, bending, radius, stiffness] = parameters;
+        let [soft_stretch, stiff_stretch, onset, bending, radius, stiffness, holding] = parameters;
         let contact = [ContactPhase { radius, stiffness }, self.contact[1]];
-        Self { soft_stretch, stiff_stretch, onset, bending, contact, reading: self.reading }
+        Self { soft_stretch, stiff_stretch, onset, bending, contact, reading: self.reading, holding }
     }
 }
 
@@ -243,8 +252,11 @@ impl TileSystem {
             let wider = element.gradient_by_outer_radius(&q);
             self.add_work(stencil, &wider, motions, &mut work[RodParameter::OuterRadius as usize]);
         }
-        let by_anchor = self.anchor_by_parameters();
+        let (by_anchor, shares) = (self.anchor_by_parameters(), self.tile.shares());
         for (k, motion) in motions.iter().enumerate() {
+            let of_vertex = motion.vertices.as_chunks::<SLOTS>().0.iter().zip(displacement.as_chunks::<SLOTS>().0);
+            let held = of_vertex.zip(&shares).map(|((d, u), share)| share * (0..3).map(|i| d[i] * u[i]).sum::<f64>());
+            work[RodParameter::Holding as usize][k] += held.sum::<f64>();
             let pull: f64 = motion.vertices.iter().zip(displacement).map(|(d, u)| d * u).sum();
             work.iter_mut().zip(by_anchor).for_each(|(work, anchor)| work[k] += anchor * pull);
         }
@@ -275,6 +287,9 @@ impl TileSystem {
             sums[RodParameter::OuterContact as usize] += RodContact { phases, ..*element }.gradient(&q).0;
             sums[RodParameter::OuterRadius as usize] += element.energy_by_outer_radius(&q);
         }
+        let squares = displacement.as_chunks::<SLOTS>().0.iter().map(|u| u.iter().map(|u| u * u).sum::<f64>());
+        sums[RodParameter::Holding as usize] =
+            squares.zip(self.tile.shares()).map(|(square, share)| 0.5 * share * square).sum();
         let square: f64 = displacement.iter().map(|u| u * u).sum();
         let by_anchor = self.anchor_by_parameters();
         sums.iter_mut().zip(by_anchor).for_each(|(sum, anchor)| *sum += 0.5 * anchor * square);

@@ -30,7 +30,8 @@ pub struct TileSystem {
     /// Gradient by the displacements, and by the compression \[N, J\].
     pub gradient: Vec<f64>,
     pub compression_gradient: f64,
-    /// Stiffness of the springs that hold `ũ` \[N/m\].
+    /// Stiffness of the springs that hold each slot of `ũ` \[N/m\], and its part that [`super::EquilibriumSettings::anchor`] asks for.
+    holding: Vec<f64>,
     pub anchor: f64,
     pub material: RodMaterial,
     followers: Followers,
@@ -45,7 +46,16 @@ pub struct TileSystem {
 const MARGIN: f64 = 0.25;
 
 impl TileSystem {
-    pub fn new(tile: &YarnTile, material: &RodMaterial, free_compression: bool) -> Result<Self, CholeskyError> {
+    /// `anchor` \[N/m\] holds every vertex, beside what the material holds it with.
+    ///
+    /// # Errors
+    /// If the system is too large.
+    pub fn new(
+        tile: &YarnTile,
+        material: &RodMaterial,
+        anchor: f64,
+        free_compression: bool,
+    ) -> Result<Self, CholeskyError> {
         let own = |vertex: u32| Image { vertex, shift: [0, 0] };
         let image = |(vertex, shift): (u32, [i32; 2])| Image { vertex, shift };
         let stretch = Kind::new(tile.edges.iter().zip(&tile.rest_lengths).map(|(edge, &rest_length)| {
@@ -72,7 +82,8 @@ impl TileSystem {
             second,
             gradient: vec![0.0; SLOTS * tile.vertex_count()],
             compression_gradient: 0.0,
-            anchor: 0.0,
+            holding: Self::holding(tile, material.holding, anchor),
+            anchor,
             material: *material,
             free_compression,
             searched: None,
@@ -173,7 +184,20 @@ impl TileSystem {
         self.energy_of(&self.stretch, displacement)
             + self.energy_of(&self.bending, displacement)
             + self.energy_of(&self.contact, displacement)
-            + 0.5 * self.anchor * displacement.iter().map(|u| u * u).sum::<f64>()
+            + self.energy_of_holding(displacement)
+    }
+
+    fn energy_of_holding(&self, displacement: &[f64]) -> f64 {
+        0.5 * self.holding.iter().zip(displacement).map(|(k, u)| k * u * u).sum::<f64>()
+    }
+
+    /// Stiffness of each slot's spring: a stiffness a length of yarn \[N/m²\] times the vertex's share of it, and a stiffness \[N/m\].
+    fn holding(tile: &YarnTile, by_length: f64, each: f64) -> Vec<f64> {
+        let mut holding = vec![0.0; SLOTS * tile.vertex_count()];
+        for (vertex, share) in tile.shares().into_iter().enumerate() {
+            holding[SLOTS * vertex..SLOTS * vertex + 3].fill(by_length * share + each);
+        }
+        holding
     }
 
     fn energy_of<E: Element<N>, const N: usize, const K: usize>(&self, kind: &Kind<E, K>, displacement: &[f64]) -> f64 {
@@ -214,9 +238,9 @@ impl TileSystem {
             + self.add_kind(&bending, displacement, convexity)
             + self.add_kind(&contact, displacement, convexity);
         (self.stretch, self.bending, self.contact) = (stretch, bending, contact);
-        self.gradient.iter_mut().zip(displacement).for_each(|(g, u)| *g += self.anchor * u);
-        self.second.add_diagonal(self.anchor);
-        energy + 0.5 * self.anchor * displacement.iter().map(|u| u * u).sum::<f64>()
+        self.gradient.iter_mut().zip(&self.holding).zip(displacement).for_each(|((g, k), u)| *g += k * u);
+        self.second.add_diagonal(&self.holding);
+        energy + self.energy_of_holding(displacement)
     }
 
     /// The elements, moved out while the rest of the system is written to.

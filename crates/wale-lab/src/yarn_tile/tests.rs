@@ -253,7 +253,8 @@ fn slopes_by_the_material_are_those_of_differences() {
     // The straight yarns of the weave, symmetric as they are drawn, balance on a ridge at large stretch.
     for (tile, stretch) in [(stockinette(), 0.08), (basket(), 0.02)] {
         let base = material(&tile);
-        let material = RodMaterial { stiff_stretch: 3.0 * base.soft_stretch, onset: 1e-3, ..base };
+        let holding = base.bending / tile.radius().powi(4) * 1e-2;
+        let material = RodMaterial { stiff_stretch: 3.0 * base.soft_stretch, onset: 1e-3, holding, ..base };
         for (free, angle) in [(false, 0.0), (false, 0.7), (true, 0.0), (true, 0.7)] {
             let deformation = CoarseDeformation::stretched(angle, stretch, 0.02);
             let make = if free { TileSolver::free_compression } else { TileSolver::new };
@@ -285,5 +286,46 @@ fn slopes_by_the_material_are_those_of_differences() {
                 assert!(slopes.stress[k] != 0.0, "{name}");
             }
         }
+    }
+}
+
+#[test]
+fn what_holds_a_yarn_is_a_spring() {
+    // A stretched tile whose yarns are let go moves less the harder it is held; held very hard it does not move at all, and its stress
+    // is that of yarns that follow the plane.
+    let tile = stockinette();
+    let deformation = CoarseDeformation::stretched(0.0, 0.1, 0.0);
+    let moved = |holding: f64| {
+        let material = RodMaterial { holding, ..material(&tile) };
+        let found = rest(&mut TileSolver::new(&tile, &material, settings()).unwrap(), &deformation);
+        let square: f64 = found.displacement.iter().flatten().map(|u| u * u).sum();
+        (square.sqrt() / tile.radius(), found.stress.stretch)
+    };
+    let stiffness = material(&tile).bending / tile.radius().powi(4);
+    let all = [0.0, 1e-2 * stiffness, stiffness, 1e5 * stiffness].map(moved);
+    assert!(all.windows(2).all(|pair| pair[1].0 < pair[0].0 && pair[1].1 > pair[0].1), "{all:?}");
+    assert!(all[3].0 < 1e-2, "{all:?}");
+}
+
+#[test]
+fn slopes_of_bending_stiffness_are_those_of_differences() {
+    let tile = stockinette();
+    let base = material(&tile);
+    let holding = base.bending / tile.radius().powi(4) * 1e-1;
+    let material = RodMaterial { stiff_stretch: 3.0 * base.soft_stretch, onset: 1e-3, holding, ..base };
+    let sharp = EquilibriumSettings { tolerance: 1e-12, anchor: 1e-2, ..settings() };
+    let at = |material: &RodMaterial| bending_answer(&tile, material, sharp, &CoarseDeformation::REST, 10.0).unwrap();
+    let found = at(&material);
+    let plain = bending_stiffness(&tile, &material, sharp, &CoarseDeformation::REST, 10.0).unwrap();
+    assert!((found.stiffness / plain - 1.0).abs() < 1e-6);
+    for k in 0..RodParameter::COUNT {
+        let near = |factor: f64| {
+            let mut changed = material.parameters();
+            changed[k] *= factor;
+            at(&material.with_parameters(changed)).stiffness
+        };
+        let (expected, slope) = ((near(1.001) - near(0.999)) / 2e-3, found.slope[k] * material.parameters()[k]);
+        let name = RodParameter::NAMES[k];
+        assert!((expected - slope).abs() < 2e-2 * slope.abs() + 1e-4 * found.stiffness, "{name}: {slope} {expected}");
     }
 }

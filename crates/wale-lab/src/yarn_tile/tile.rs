@@ -1,5 +1,6 @@
 //! A periodic tile of yarns: vertices, edges over the tile's border, rest shapes.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use wale_numerics::jet::vector3::{cross, dot, sub};
 
@@ -9,7 +10,7 @@ pub const MOST_VERTICES: usize = 100_000;
 pub const MOST_SHIFT: i32 = 8;
 
 /// A piece of a yarn between two vertices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edge {
     /// First and last vertex.
     pub ends: [u32; 2],
@@ -20,7 +21,8 @@ pub struct Edge {
 /// A rectangle of fabric that repeats in both directions, flat at rest, with its yarns; heights are measured from their mean.
 ///
 /// Yarns have no ends: each vertex is the last of one edge and the first of one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written", into = "Written")]
 pub struct YarnTile {
     pub(super) periods: [f64; 2],
     pub(super) radius: f64,
@@ -135,7 +137,10 @@ impl YarnTile {
             }
         }
         let mean = vertices.iter().map(|x| x[2]).sum::<f64>() / n as f64;
-        vertices.iter_mut().for_each(|x| x[2] -= mean);
+        // Heights that were centred once stay as they are, bit by bit.
+        if mean.abs() > 1e-12 * radius {
+            vertices.iter_mut().for_each(|x| x[2] -= mean);
+        }
         let yarns = yarns(&edges, &around);
         let tile = Self { periods, radius, vertices, edges, rest_lengths, rest_curvatures, yarns, around };
         if let Some(edge) = tile.lengths().iter().position(|&length| length <= 0.0) {
@@ -202,6 +207,13 @@ impl YarnTile {
         [(before.ends[0], before.shift.map(|s| -s)), (after.ends[1], after.shift)]
     }
 
+    /// Length of yarn at rest that each vertex stands for: half of each edge at it \[m\].
+    #[must_use]
+    pub fn shares(&self) -> Vec<f64> {
+        let share = |edges: &[u32; 2]| edges.iter().map(|&edge| 0.5 * self.rest_lengths[edge as usize]).sum();
+        self.around.iter().map(share).collect()
+    }
+
     /// Lengths of the edges as they lie \[m\].
     #[must_use]
     pub fn lengths(&self) -> Vec<f64> {
@@ -258,6 +270,31 @@ impl YarnTile {
         let periods = [0, 1].map(|axis| self.periods[axis] * counts[axis] as f64);
         let (lengths, curvatures) = (self.rest_lengths.repeat(copies), self.rest_curvatures.repeat(copies));
         Self::new(periods, self.radius, vertices, edges, lengths, curvatures).expect("copies of a tile make a tile")
+    }
+}
+
+/// A tile as it is written.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Written {
+    periods: [f64; 2],
+    radius: f64,
+    vertices: Vec<[f64; 3]>,
+    edges: Vec<Edge>,
+    rest_lengths: Vec<f64>,
+    rest_curvatures: Vec<f64>,
+}
+
+impl From<YarnTile> for Written {
+    fn from(tile: YarnTile) -> Self {
+        let YarnTile { periods, radius, vertices, edges, rest_lengths, rest_curvatures, .. } = tile;
+        Self { periods, radius, vertices, edges, rest_lengths, rest_curvatures }
+    }
+}
+
+impl TryFrom<Written> for YarnTile {
+    type Error = TileFault;
+    fn try_from(w: Written) -> Result<Self, TileFault> {
+        Self::new(w.periods, w.radius, w.vertices, w.edges, w.rest_lengths, w.rest_curvatures)
     }
 }
 

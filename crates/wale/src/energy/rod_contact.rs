@@ -1,5 +1,6 @@
 //! Contact of two yarn edges of fixed rest lengths, soft at a distance and stiff when the yarns are squeezed.
 
+use serde::{Deserialize, Serialize};
 use wale_numerics::check::Local;
 use wale_numerics::jet::Real;
 use wale_numerics::jet::vector3::{dot, sub};
@@ -7,7 +8,8 @@ use wale_numerics::jet::vector3::{dot, sub};
 use super::element::{Element, point};
 
 /// How the square in the printed contact energy is meant; see [`RodContact`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum ContactReading {
     /// As printed, `f(x)²`: a contact sets in with `(1 − x)⁶`, very softly.
     #[default]
@@ -19,7 +21,7 @@ pub enum ContactReading {
 }
 
 /// One of the two phases of a contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactPhase {
     /// Radius `R` \[m\]: the phase acts where centrelines are nearer than `2R`.
     pub radius: f64,

@@ -1,0 +1,137 @@
+//! A yarn fitted from the beginning to the end, by whichever way.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::gradients::{Found, GradientSettings, fit_by_gradients, improve};
+use super::journal::Stopped;
+use super::objective::{YarnFitError, errors};
+use super::problem::{Answers, Evaluation, P, Question, YarnProblem};
+use super::progress::Progress;
+use super::space::RodSpace;
+use super::swarm::{FAILED, SwarmSettings, fit_by_swarm, fit_locally};
+use super::target::Target;
+use crate::yarn_tile::{RodMaterial, RodParameter};
+
+/// A way to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Way {
+    /// Least squares with exact derivatives from several places.
+    Gradients(GradientSettings),
+    /// A swarm, then COBYLA [Sperl2022, section 7.3.3].
+    Swarm(SwarmSettings),
+    /// COBYLA alone, from the middle of the bounds [Sperl2022, Fig. 11].
+    Local(SwarmSettings),
+}
+
+/// Points along each curve that a fit is judged with at its end.
+const SAMPLES: usize = 8;
+/// Part of the width of its bounds within which a coordinate is at one.
+const AT_BOUND: f64 = 1e-3;
+
+/// A yarn that was fitted.
+#[derive(Clone, Debug)]
+pub struct YarnFit {
+    /// What the yarn is made of.
+    pub material: RodMaterial,
+    /// Sum of squares [Sperl2022, Eq. 11].
+    pub cost: f64,
+    /// Errors as the paper gives them.
+    pub error: YarnFitError,
+    /// What was to be met, and what the fitted yarn does there.
+    pub targets: Vec<Target>,
+    /// Its answers.
+    pub evaluation: Evaluation,
+    /// Factor within which each number is known with 95 % confidence, infinite where the data do not say, one where it was held. Of
+    /// the onset, `e^{δ/0.05}` of an interval `δ`.
+    pub within: [f64; P],
+    /// Evaluations that were made.
+    pub evaluations: usize,
+    /// What stays open, in words.
+    pub open: Vec<String>,
+}
+
+/// Fits a yarn. `None` if its tile could not be tested anywhere within the bounds.
+///
+/// # Errors
+/// If a question is not answered now.
+pub fn fit_yarn<A: Answers>(
+    problem: &YarnProblem,
+    answers: &A,
+    way: &Way,
+    progress: &Progress<'_>,
+) -> Result<Option<YarnFit>, A::Unanswered> {
+    let found = match way {
+        Way::Gradients(settings) => fit_by_gradients(problem, answers, settings, progress)?,
+        Way::Swarm(settings) => fit_by_swarm(problem, answers, settings, progress)?,
+        Way::Local(settings) => Some(fit_locally(problem, answers, [0.5; P], settings, progress)?),
+    };
+    let Some(found) = found.filter(|found| found.cost < FAILED) else { return Ok(None) };
+    judge(problem, answers, found, progress)
+}
+
+/// Looks at what was found once more: its curves, how well each number is known, and what is at a bound.
+fn judge<A: Answers>(
+    problem: &YarnProblem,
+    answers: &A,
+    found: Found,
+    progress: &Progress<'_>,
+) -> Result<Option<YarnFit>, A::Unanswered> {
+    let looked = GradientSettings { rounds: 0, samples: SAMPLES, ..GradientSettings::default() };
+    let at = found.coordinates;
+    let within = match found.least_squares {
+        Some(least_squares) => Some(least_squares.uncertainty),
+        None => {
+            let once = improve(problem, answers, at, &looked, progress)?;
+            once.and_then(|found| found.least_squares).map(|least_squares| least_squares.uncertainty)
+        }
+    };
+    let within = within.unwrap_or([f64::INFINITY; P]);
+    let parameters = RodSpace::parameters(at);
+    let question = Question::of(parameters, SAMPLES, false);
+    let Some(evaluation) = answers.answer(&question)? else { return Ok(None) };
+    let targets: Vec<Target> = problem.targets.iter().map(|target| target.resampled(SAMPLES)).collect();
+    let mut open = Vec::new();
+    for (k, [low, high]) in problem.space.coordinate_bounds().into_iter().enumerate() {
+        let (name, width) = (RodParameter::NAMES[k], high - low);
+        if width > 0.0 && at[k] <= low + AT_BOUND * width {
+            open.push(format!("{name} is at its lower bound"));
+        } else if width > 0.0 && at[k] >= high - AT_BOUND * width {
+            open.push(format!("{name} is at its upper bound"));
+        } else if within[k] > 3.0 {
+            open.push(format!("{name} is not determined by these tests"));
+        }
+    }
+    Ok(Some(YarnFit {
+        material: problem.base.with_parameters(parameters),
+        cost: found.cost,
+        error: errors(&targets, &evaluation.stretch),
+        targets,
+        evaluation,
+        within,
+        evaluations: progress.now().evaluations,
+        open,
+    }))
+}
+
+/// Answers until somebody wants to stop.
+#[derive(Debug)]
+pub struct Interruptible<'a, A> {
+    /// Who answers.
+    pub by: A,
+    /// Raised when enough was answered.
+    pub stop: &'a AtomicBool,
+}
+
+impl<A: Answers> Answers for Interruptible<'_, A>
+where
+    A::Unanswered: Into<Stopped>,
+{
+    type Unanswered = Stopped;
+
+    fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Stopped> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(Stopped::Interrupted);
+        }
+        self.by.answer(question).map_err(Into::into)
+    }
+}
