@@ -5,5 +5,6 @@ pub mod card_file;
 pub mod curve;
 pub mod fabric_file;
 pub mod fabric_fit;
+pub mod register;
 pub mod shell;
 pub mod yarn_tile;
