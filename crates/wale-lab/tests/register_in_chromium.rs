@@ -351,6 +351,49 @@ fn a_plain_weave_needs_orders_and_keeps_them() {
 }
 
 #[test]
+fn depths_are_the_smoothest_that_keep_yarns_apart() {
+    let Some(browser) = chromium_or_say_so("depths_are_the_smoothest_that_keep_yarns_apart") else { return };
+    // At the least, the slope of the energy is the crossings' pressures, which push where yarns touch and nowhere else.
+    let script = "
+        let seed = 7;
+        const random = () => (seed = seed * 16807 % 2147483647) / 2147483647;
+        const energy = (yarns, heights) => yarns.reduce((sum, steps, y) => sum + steps.reduce((part, _, i) => {
+          const n = steps.length, b = (i + n - 1) % n, a = (i + 1) % n, mean = (steps[b] + steps[i]) / 2, z = heights[y];
+          const turn = (z[a] - z[i]) / steps[i] - (z[i] - z[b]) / steps[b];
+          return part + 0.5 * turn * turn / mean + 0.5 * TO_THE_MIDDLE * mean * z[i] * z[i];
+        }, 0), 0);
+        const at = ([yarn, edge, part], heights) => (1 - part) * heights[yarn][edge] + part * heights[yarn][(edge + 1) % heights[yarn].length];
+        const trials = [];
+        for (let trial = 0; trial < 20; trial++) {
+          const yarns = Array.from({ length: 4 }, () => Array.from({ length: 12 + Math.floor(20 * random()) }, () => 0.6 + 0.8 * random()));
+          const end = yarn => [yarn, Math.floor(random() * yarns[yarn].length), random()];
+          const crossings = Array.from({ length: 10 }, (_, i) => ({ over: end(i % 4), under: end((i + 1 + i % 3) % 4) }));
+          const { heights, gaps, pressures } = solveDepths(yarns, crossings);
+          const way = yarns.map(steps => steps.map(() => random() - 0.5)), moved = by => heights.map((h, y) => Array.from(h, (z, i) => z + by * way[y][i]));
+          const slope = (energy(yarns, moved(1e-4)) - energy(yarns, moved(-1e-4))) / 2e-4;
+          const pressed = crossings.reduce((sum, c, i) => sum + pressures[i] * (at(c.over, way) - at(c.under, way)), 0);
+          trials.push({ slope, pressed, gap: Math.min(...gaps), open: gaps.filter(g => g > 2.01).length, pull: Math.min(...pressures),
+            idle: Math.max(...gaps.map((g, i) => Math.abs(g - 2) * pressures[i])), mean: heights.reduce((s, h) => s + h.reduce((t, z) => t + z, 0), 0) });
+        }
+        let torn = '';
+        const ring = [1, 1, 1, 1, 1, 1], crossing = { over: [0, 2, 0.5], under: [1, 2, 0.5] };
+        try { solveDepths([ring, ring], [crossing, { over: crossing.under, under: crossing.over }]); } catch (error) { torn = error.message; }
+        return { trials, torn };";
+    let found = Visit::new(&browser, &blank()).run(script);
+    let mut open = 0.0;
+    for trial in found["trials"].as_array().expect("trials") {
+        let number = |key: &str| trial[key].as_f64().unwrap_or_else(|| panic!("no number `{key}` in {trial}"));
+        let (slope, pressed) = (number("slope"), number("pressed"));
+        assert!((slope - pressed).abs() < 1e-5 * (1.0 + pressed.abs()), "{trial}");
+        assert!(number("gap") > 2.0 - 1e-5 && number("pull") >= 0.0 && number("idle") < 1e-5, "{trial}");
+        assert!(number("mean").abs() < 1e-6, "{trial}");
+        open += number("open");
+    }
+    assert!(open > 0.0, "no crossing is held open by others: the rule was not tried");
+    assert!(text(&found, "torn").contains("contradict"), "{found}");
+}
+
+#[test]
 fn mouse_and_keys_lay_a_yarn_that_is_seen_on_the_photograph() {
     let Some(browser) = chromium_or_say_so("mouse_and_keys_lay_a_yarn_that_is_seen_on_the_photograph") else { return };
     let page = swatch();

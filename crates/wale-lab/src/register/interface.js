@@ -170,19 +170,21 @@ class Page {
   }
 }
 
-async function photograph(id) {
+function photograph(id) {
   const uri = $(id).textContent;
   $(id).textContent = "";
   if (!uri) return null;
   const image = new Image();
-  image.src = uri;
-  try { await image.decode(); } catch (error) { throw new Error(`The browser cannot show the ${id} photograph: it is damaged, or of an unusual kind.`); }
-  return image;
+  return new Promise((done, refused) => {
+    image.onload = () => done(image);
+    image.onerror = () => refused(new Error(`The browser cannot show the ${id} photograph: it is damaged, or of an unusual kind.`));
+    image.src = uri;
+  });
 }
 
 async function start() {
   const facts = JSON.parse($("facts").textContent);
-  const [front, back] = [await photograph("front"), await photograph("back")];
+  const [front, back] = await Promise.all(["front", "back"].map(photograph));
   const page = new Page(facts, { front, back });
   window.register = page.register;
   window.registerPage = page;

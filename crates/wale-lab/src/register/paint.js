@@ -34,9 +34,9 @@ class Painter {
     c.fillRect(0, 0, canvas.clientWidth, canvas.clientHeight);
     this.photos(register.work, look);
     const drawn = register.drawn(), images = this.images(look.neighbours);
-    this.tile(register.work, look);
-    if (look.style === "yarns" && look.solved) this.bodies(register.work, look, images);
+    if (look.style === "yarns" && look.solved) this.bodies(register.work, drawn, look, images);
     else this.bands(register.work, drawn, look, images);
+    this.tile(register.work, look);
     if (look.crossings) this.crossings(register.work, drawn, look, images);
     this.points(register.work, look);
   }
@@ -124,30 +124,43 @@ class Painter {
     }
   }
 
-  // Yarns as they lie over each other: edges from the lowest to the highest.
-  bodies(work, look, images) {
-    const c = this.context, perMetre = this.view.scale / Math.sqrt(scalesOf(work)[0] * scalesOf(work)[1]);
-    const width = 2 * work.radius_m * perMetre, edges = [], { chains, heights } = look.solved;
-    // Heights along the fine polyline, so that curves look smooth however few vertices there are.
-    chains.forEach((chain, y) => {
-      const count = chain.vertices.length, fine = Math.max(1, Math.round(240 / count));
-      for (let e = 0; e < count; e++) {
-        const [a, b] = edgeOf(chain, e), [z, up] = [heights[y][e], heights[y][(e + 1) % count]];
-        const at = t => [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-        for (let k = 0; k < fine; k++) edges.push({ y, z: z + (k + 0.5) / fine * (up - z), from: at(k / fine), to: at((k + 1) / fine) });
+  // Yarns as they lie over each other: short pieces from the lowest to the highest, each with its sides in ink. They are drawn
+  // apart and laid over the photograph as one, so that what is hidden does not shine through.
+  bodies(work, drawn, look, images) {
+    const layer = document.createElement("canvas"), own = this.context, { chains, heights } = look.solved;
+    Object.assign(layer, { width: this.canvas.width, height: this.canvas.height });
+    const c = layer.getContext("2d");
+    c.setTransform(own.getTransform());
+    const width = 2 * work.radius_m * this.view.scale / Math.sqrt(scalesOf(work)[0] * scalesOf(work)[1]);
+    const highest = Math.max(...heights.flat().map(Math.abs), 1e-12), side = look.blend > 0.5 ? -1 : 1, pieces = [];
+    drawn.lines.forEach((line, y) => {
+      const n = line.places.length - 1, jump = chains[y].jump;
+      // Places before the first and after the last are images of others.
+      const place = i => i < 0 || i > n ? line.places[(i + n) % n].map((x, k) => x + Math.sign(i) * jump[k]) : line.places[i];
+      for (let i = 0, e = 0; i < n; i++) {
+        while (e + 1 < chains[y].lengths.length && chains[y].lengths[e + 1] <= line.lengths[i]) e++;
+        const from = chains[y].lengths[e], to = chains[y].lengths[e + 1] ?? chains[y].planLength;
+        const t = Math.min((line.lengths[i] - from) / (to - from), 1), low = heights[y][e], high = heights[y][(e + 1) % heights[y].length];
+        pieces.push({ color: work.yarns[y].color, z: low + t * (high - low), places: [-1, 0, 1, 2].map(k => place(i + k)) });
       }
     });
-    const highest = Math.max(...edges.map(e => Math.abs(e.z)), 1e-12), side = look.blend > 0.5 ? -1 : 1;
-    edges.sort((a, b) => side * (a.z - b.z));
-    c.globalAlpha = look.yarn;
-    for (const edge of edges) for (const image of images) {
-      const line = [this.metres(work, edge.from, image), this.metres(work, edge.to, image)];
-      c.lineCap = "butt"; c.lineWidth = width; c.strokeStyle = INK;
-      this.path(line); c.stroke();
-      c.lineCap = "round"; c.lineWidth = Math.max(width - 3, 1); c.strokeStyle = shaded(work.yarns[edge.y].color, side * edge.z / highest);
-      this.path(line); c.stroke();
+    pieces.sort((a, b) => side * (a.z - b.z));
+    const stroke = (places, color, thick) => {
+      c.beginPath();
+      places.forEach(([x, y], i) => i ? c.lineTo(x, y) : c.moveTo(x, y));
+      Object.assign(c, { lineWidth: thick, strokeStyle: color, lineJoin: "round" });
+      c.stroke();
+    };
+    for (const { places, color, z } of pieces) for (const image of images) {
+      const seen = places.map(at => this.metres(work, at, image));
+      stroke(seen, INK, width);
+      stroke(seen, shaded(color, side * z / highest), Math.max(width - 3, 1));
     }
-    c.globalAlpha = 1;
+    own.save();
+    own.setTransform(1, 0, 0, 1, 0, 0);
+    own.globalAlpha = look.yarn;
+    own.drawImage(layer, 0, 0);
+    own.restore();
   }
 
   points(work, look) {

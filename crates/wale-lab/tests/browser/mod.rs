@@ -60,10 +60,13 @@ fn browse(browser: &Path, folder: &Path, html: &str, more: &[String]) -> String 
     fs::read_to_string(&printed).expect("what Chromium printed")
 }
 
-/// The page with a script that runs when the page is ready.
+/// The page with a script that runs when the page is ready, which it may be before the script is read.
 fn with_script(html: &str, script: &str) -> String {
     let (before, after) = html.rsplit_once("</body>").expect("a page has a body");
-    format!("{before}<script>window.addEventListener('register-ready', () => {{ {script} }});</script></body>{after}")
+    format!(
+        "{before}<script>const whenReady = () => {{ {script} }};
+        if (document.body.dataset.state) whenReady(); else window.addEventListener('register-ready', whenReady);</script></body>{after}"
+    )
 }
 
 /// A page that is visited.
