@@ -26,7 +26,11 @@ fn a_page_holds_both_photographs_and_is_not_overwritten_unasked() {
     let page = folder.path().join("swatch.register.html");
     let text = fs::read_to_string(&page).unwrap();
     assert_eq!(text.matches("data:image/png;base64,").count(), 2);
-    assert!(text.contains("\"mirrored\":true") && text.contains("\"scale_m\":1e-5") || text.contains("0.00001"));
+    let facts = text.split_once("id=\"facts\">").and_then(|(_, rest)| rest.split_once("</script>")).unwrap().0;
+    let facts: serde_json::Value = serde_json::from_str(facts).unwrap();
+    let near = |value: &serde_json::Value, expected: f64| (value.as_f64().unwrap() / expected - 1.0).abs() < 1e-12;
+    assert!(near(&facts["scale_m"], 10e-6) && near(&facts["radius_m"], 0.2e-3) && near(&facts["periods_m"][1], 1.6e-3));
+    assert_eq!((facts["name"].as_str(), facts["mirrored"].as_bool()), (Some("swatch"), Some(true)));
 
     fs::write(&page, "mine").unwrap();
     assert_fails(&wale(&arguments), 3, &["swatch.register.html", "--force"]);

@@ -24,7 +24,7 @@ class Page {
     this.register.onChange(settled => { this.inRange(); this.changed(settled); if (settled) this.remember(); });
     this.hands();
     window.addEventListener("keydown", event => this.key(event));
-    new ResizeObserver(() => this.painter.draw(this.register, this.look)).observe($("canvas"));
+    new ResizeObserver(() => this.resized()).observe($("canvas"));
     this.fit();
     this.changed(true);
   }
@@ -68,7 +68,14 @@ class Page {
 
   setMode(mode) { this.look.mode = mode; if (mode === "back") this.setBlend(0.5); this.changed(true); }
   setBlend(blend) { this.look.blend = blend; $("blend").value = blend; this.redraw(); }
-  fit() { this.painter.fit([[0, 0], this.size]); this.redraw(); }
+  fit() { this.painter.fit([[0, 0], this.size]); this.fitted = { ...this.painter.view }; this.redraw(); }
+  // A window of another size shows the whole photograph as long as nobody has looked closer; at once, since a canvas that is
+  // stretched until the next picture would flicker.
+  resized() {
+    const { view } = this.painter;
+    if (Object.keys(view).every(key => view[key] === this.fitted[key])) this.fit();
+    this.painter.draw(this.register, this.look);
+  }
 
   setLayer(layer) {
     this.attempt(() => {
