@@ -141,7 +141,7 @@ class Painter {
         while (e + 1 < chains[y].lengths.length && chains[y].lengths[e + 1] <= line.lengths[i]) e++;
         const from = chains[y].lengths[e], to = chains[y].lengths[e + 1] ?? chains[y].planLength;
         const t = Math.min((line.lengths[i] - from) / (to - from), 1), low = heights[y][e], high = heights[y][(e + 1) % heights[y].length];
-        pieces.push({ color: work.yarns[y].color, z: low + t * (high - low), places: [-1, 0, 1, 2].map(k => place(i + k)) });
+        pieces.push({ color: work.yarns[y].color, z: low + t * (high - low), places: [-2, -1, 0, 1, 2, 3].map(k => place(i + k)) });
       }
     });
     pieces.sort((a, b) => side * (a.z - b.z));
@@ -153,7 +153,8 @@ class Painter {
     };
     for (const { places, color, z } of pieces) for (const image of images) {
       const seen = places.map(at => this.metres(work, at, image));
-      stroke(seen, INK, width);
+      // Colour reaches a little farther than ink, whose ends would show as lines across the yarn.
+      stroke(seen.slice(1, 5), INK, width);
       stroke(seen, shaded(color, side * z / highest), Math.max(width - 3, 1));
     }
     own.save();

@@ -30,7 +30,8 @@ function chainOf(work, yarn, line, lengths) {
 }
 
 function evenLengths(total, spacing, closed) {
-  const count = Math.min(Math.max(Math.round(total / spacing), 4), MOST_VERTICES);
+  // One more than is allowed is enough to be told of, however far away a point was put.
+  const count = Math.min(Math.max(Math.round(total / spacing), 4), MOST_VERTICES + 1);
   return Array.from({ length: closed ? count : count + 1 }, (_, i) => i * total / count);
 }
 
