@@ -40,7 +40,11 @@ pub struct Register {
 fn parse_length(text: &str) -> Result<f64, String> {
     let deserializer: StrDeserializer<'_, Error> = text.into_deserializer();
     let length = Quantity::<Length, Positive>::deserialize(deserializer);
-    length.map(Quantity::si).map_err(|error| error.to_string().replace('\n', "; "))
+    length.map(Quantity::si).map_err(|error| {
+        // Scene files take bare numbers too; on a command line they would be mistaken for millimetres.
+        let error = error.to_string().replace('\n', "; ");
+        error.split(", or a bare number").next().unwrap_or_default().to_owned()
+    })
 }
 
 /// Two positive lengths with an `x` between them \[m\].
@@ -64,6 +68,7 @@ mod tests {
             let error = parse_length(bad).unwrap_err();
             assert!(error.contains(says) && !error.contains('\n'), "{error}");
         }
+        assert!(!parse_length("2").unwrap_err().contains("bare number"));
         assert!(parse_periods("2.1 mm").unwrap_err().contains("two periods"));
         assert!(parse_periods("2.1 x 1.6 mm").unwrap_err().contains("has no unit"));
     }
