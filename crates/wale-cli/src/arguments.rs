@@ -39,6 +39,8 @@ pub enum Command {
     Relax(Relax),
     /// Fit a thin shell to the measured curves of a fabric file; write its card, curves and a report
     Fit(Fit),
+    /// Write a page on which yarns are laid over photographs of a swatch, to make a yarn tile
+    Register(crate::arguments_register::Register),
     /// Count loops, nodes and yarn of a scene or a run
     Inspect(Inspect),
     /// Draw frames of a run as PNG pictures

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod arguments;
+mod arguments_register;
 mod bench;
 mod commands;
 mod estimate;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => commands::resume::resume(arguments),
         Command::Relax(arguments) => commands::relax::relax(arguments),
         Command::Fit(arguments) => commands::fit::fit(arguments),
+        Command::Register(arguments) => commands::register::register(arguments),
         Command::Inspect(arguments) => commands::inspect::inspect(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
         Command::Plot(arguments) => commands::plot::plot(arguments),

@@ -9,6 +9,7 @@ pub mod new;
 pub mod pattern_pictures;
 pub mod patterns;
 pub mod plot;
+pub mod register;
 pub mod relax;
 pub mod render;
 pub mod resume;
