@@ -6,4 +6,5 @@ pub mod curve;
 pub mod fabric_file;
 pub mod fabric_fit;
 pub mod shell;
+pub mod virtual_test;
 pub mod yarn_tile;

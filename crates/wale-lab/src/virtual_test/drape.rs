@@ -1,0 +1,131 @@
+//! The drape test of Cusick (BS 5058, ISO 9073-9): a round specimen hangs over a round support.
+
+use std::f64::consts::{PI, TAU};
+
+use wale::fabric::coordinates::BLOCK;
+
+use super::drape_mesh::{RoundSpecimen, round_specimen};
+use super::shadow::{covered_area, nodes, outline};
+use crate::shell::error::{ShellError, positive};
+use crate::shell::rest::{RestSettings, come_to_rest};
+use crate::shell::{ShellCard, ShellSystem};
+
+/// A specimen on its support.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DrapeTest {
+    /// Diameter of the specimen \[m\].
+    pub specimen: f64,
+    /// Diameter of the support \[m\].
+    pub support: f64,
+    /// Gravity, downward \[m/s²\].
+    pub gravity: f64,
+    /// Edge length of the mesh \[m\].
+    pub edge: f64,
+    /// Which of many small pushes the specimen starts with: as in the laboratory, folds depend on it.
+    pub start: u32,
+    /// When it is at rest.
+    pub rest: RestSettings,
+}
+
+impl Default for DrapeTest {
+    /// 30 cm on 18 cm.
+    fn default() -> Self {
+        let rest = RestSettings { tolerance: 1e-7, max_iterations: 2000 };
+        Self { specimen: 0.30, support: 0.18, gravity: 9.81, edge: 0.007, start: 1, rest }
+    }
+}
+
+/// What the test reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrapeResult {
+    /// `DC = (A_shadow − A_support)/(A_specimen − A_support)` \[–\].
+    pub coefficient: f64,
+    /// Area of the shadow \[m²\].
+    pub shadow: f64,
+    /// Area of the specimen \[m²\].
+    pub specimen: f64,
+    /// Area of the support \[m²\].
+    pub support: f64,
+    /// Nodes of the shadow's outline.
+    pub nodes: usize,
+    /// How far the shadow reaches in evenly spread directions, counter-clockwise from the weft \[m\].
+    pub outline: Vec<f64>,
+    /// How far the lowest point hangs below the support \[m\].
+    pub depth: f64,
+    /// Places of the vertices, the support's surface at height zero \[m\].
+    pub places: Vec<[f64; 3]>,
+    /// Vertices of the triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Newton iterations.
+    pub iterations: usize,
+}
+
+/// Height of the first push over the free width \[–\].
+const PUSH: f64 = 0.05;
+/// Waves around the specimen of which the push is made.
+const WAVES: std::ops::RangeInclusive<u32> = 1..=9;
+
+impl DrapeTest {
+    /// Lets a fabric hang until it is at rest.
+    ///
+    /// A flat sheet that sags evenly is an equilibrium, though not one that lasts: a push of unequal waves lets folds form. They
+    /// do not touch each other: a limp sheet whose folds would lie on each other passes through itself.
+    ///
+    /// # Errors
+    /// [`ShellError`]: an impossible number, a fabric without weight or bending stiffness, or a specimen that does not come to rest.
+    pub fn run(&self, card: &ShellCard) -> Result<DrapeResult, ShellError> {
+        positive("gravity", self.gravity)?;
+        positive("areal mass", card.areal_mass)?;
+        for stiffness in card.bending.to_array() {
+            positive("bending stiffness", stiffness)?;
+        }
+        let RoundSpecimen { mesh, held } = round_specimen(0.5 * self.specimen, 0.5 * self.support, self.edge)?;
+        let held: Vec<[bool; 3]> = held.iter().map(|&held| [held; 3]).collect();
+        let mut system = ShellSystem::new(&mesh, card, 0.0, [0.0, 0.0, -self.gravity], &held)?;
+        let mut q = mesh.laid_flat();
+        self.push(&mesh.points, &held, &mut q);
+        let report = come_to_rest(&mut system, &mut q, &self.rest).map_err(|error| match error {
+            ShellError::NotAtRest { iterations, residual, .. } => {
+                ShellError::NotAtRest { load: "the end of the drape test".into(), iterations, residual }
+            }
+            other => other,
+        })?;
+        let places: Vec<[f64; 3]> = q.chunks_exact(BLOCK).map(|slots| [slots[0], slots[1], slots[2]]).collect();
+        let seen: Vec<[[f64; 2]; 3]> =
+            mesh.triangles.iter().map(|t| t.map(|v| [places[v as usize][0], places[v as usize][1]])).collect();
+        let area = |diameter: f64| 0.25 * PI * diameter * diameter;
+        let [specimen, support] = [self.specimen, self.support].map(area);
+        let (shadow, outline) = (covered_area(&seen), outline(&seen));
+        Ok(DrapeResult {
+            coefficient: (shadow - support) / (specimen - support),
+            shadow,
+            specimen,
+            support,
+            nodes: nodes(&outline, 0.5 * self.specimen),
+            outline,
+            depth: places.iter().fold(0.0f64, |depth, p| depth.max(-p[2])),
+            places,
+            triangles: mesh.triangles,
+            iterations: report.iterations,
+        })
+    }
+
+    /// Waves of all numbers around, with sizes and places that depend on the start, growing outward.
+    fn push(&self, points: &[[f64; 2]], held: &[[bool; 3]], q: &mut [f64]) {
+        let inner = 0.5 * self.support;
+        let free = 0.5 * self.specimen - inner;
+        // The low-discrepancy sequence of the golden ratio: no start is like another, and all are the same on every machine.
+        let share = |k: u32| (0.5 + 0.618_033_988_749_895 * f64::from(k)).fract();
+        let waves: Vec<[f64; 3]> = WAVES
+            .map(|n| {
+                let k = self.start.wrapping_mul(31).wrapping_add(n) % 100_003;
+                [f64::from(n), 0.5 + 0.5 * share(2 * k), TAU * share(7 * k + 3)]
+            })
+            .collect();
+        for (v, &[x, y]) in points.iter().enumerate().filter(|(v, _)| !held[*v][2]) {
+            let (part, angle) = ((x.hypot(y) - inner) / free, y.atan2(x));
+            let sum: f64 = waves.iter().map(|[n, size, phase]| size * (n * angle + phase).cos()).sum();
+            q[BLOCK * v + 2] = PUSH * free * part * part * sum / waves.len() as f64;
+        }
+    }
+}
