@@ -6,6 +6,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::machine::parse_size;
 
+pub mod lab;
+
 /// Yarn-level simulation of knitted cloth: from a stitch chart to moving fabric.
 ///
 /// Begin with `wale new swatch.toml`, look at it with `wale check swatch.toml`, and run it with
@@ -39,6 +41,8 @@ pub enum Command {
     Relax(Relax),
     /// Fit a thin shell to the measured curves of a fabric file; write its card, curves and a report
     Fit(Fit),
+    /// Do a virtual textile test on the thin shell of a fabric: KES, FAST, cantilever, drape, …
+    Lab(lab::Lab),
     /// Count loops, nodes and yarn of a scene or a run
     Inspect(Inspect),
     /// Draw frames of a run as PNG pictures

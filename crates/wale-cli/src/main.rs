@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Command::Resume(arguments) => commands::resume::resume(arguments),
         Command::Relax(arguments) => commands::relax::relax(arguments),
         Command::Fit(arguments) => commands::fit::fit(arguments),
+        Command::Lab(arguments) => commands::lab::lab(arguments),
         Command::Inspect(arguments) => commands::inspect::inspect(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
         Command::Plot(arguments) => commands::plot::plot(arguments),

@@ -69,7 +69,8 @@ pub fn outline(triangles: &[[[f64; 2]; 3]]) -> Vec<f64> {
             let from = a[1].atan2(a[0]);
             let (low, high) = (from.min(from + turn), from.max(from + turn));
             let index = |angle: f64| angle / TAU * DIRECTIONS as f64;
-            for step in index(low).ceil() as i64..=index(high).floor() as i64 {
+            // A ray through a corner meets at least one of both sides, whichever way its place is rounded.
+            for step in (index(low) - 1e-9).ceil() as i64..=(index(high) + 1e-9).floor() as i64 {
                 let angle = TAU * step as f64 / DIRECTIONS as f64;
                 let (sin, cos) = angle.sin_cos();
                 // Where the ray meets the line through both ends.
