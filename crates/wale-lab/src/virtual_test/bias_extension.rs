@@ -16,12 +16,14 @@ pub struct BiasExtensionTest {
     pub largest: f64,
     /// Points of the curve.
     pub points: usize,
+    /// Edge length of the mesh \[m\].
+    pub edge: f64,
 }
 
 impl Default for BiasExtensionTest {
     /// 150 × 50 mm, to 40°.
     fn default() -> Self {
-        Self { specimen: Specimen { length: 0.15, width: 0.05 }, largest: 40.0 * DEG, points: 40 }
+        Self { specimen: Specimen { length: 0.15, width: 0.05 }, largest: 40.0 * DEG, points: 40, edge: 0.0025 }
     }
 }
 
@@ -70,38 +72,54 @@ impl BiasExtensionTest {
             return Err(ShellError::Number { what: "largest angle of shear", value: self.largest, must });
         }
         let diagonal = length - width;
-        let mut rig = Rig::new(card, self.specimen, FRAC_PI_4, self.specimen.edge())?;
-        let mut points = vec![BiasPoint { angle: 0.0, seen_angle: 0.0, stretch: 0.0, force: 0.0, shear_force: 0.0 }];
+        let mut rig = Rig::new(card, self.specimen, FRAC_PI_4, self.edge)?;
         let count = self.points.max(4);
+        let (mut angles, mut forces, mut seen_angles, mut travels) = (vec![0.0], vec![0.0], vec![0.0], vec![0.0]);
         for k in 1..=count {
             let angle = self.largest * k as f64 / count as f64;
             let travel = diagonal * (SQRT_2 * (FRAC_PI_4 - 0.5 * angle).cos() - 1.0);
             rig.move_to([travel, 0.0])?;
-            let (force, (sin, cos)) = (rig.force()[0], (0.5 * angle).sin_cos());
-            let half = half_way(&points, angle, force, self.specimen);
-            let shear_force = ((length / width - 1.0) * force * (cos - sin) - width * half * cos)
-                / ((2.0 * length - 3.0 * width) * angle.cos());
-            points.push(BiasPoint { angle, seen_angle: seen(&rig), stretch: travel / length, force, shear_force });
+            angles.push(angle);
+            forces.push(rig.force()[0]);
+            seen_angles.push(seen(&rig));
+            travels.push(travel);
         }
+        let shear_forces = normalised(self.specimen, &angles, &forces);
+        let points: Vec<BiasPoint> = (0..=count)
+            .map(|k| BiasPoint {
+                angle: angles[k],
+                seen_angle: seen_angles[k],
+                stretch: travels[k] / length,
+                force: forces[k],
+                shear_force: shear_forces[k],
+            })
+            .collect();
         let rigidity = points[1].shear_force / points[1].angle;
         Ok(BiasExtensionResult { points, rigidity })
     }
 }
 
-/// Normalised shear force at half an angle, from the points before; at the first, whose half lies before any, shear is taken to
-/// be linear.
-fn half_way(points: &[BiasPoint], angle: f64, force: f64, specimen: Specimen) -> f64 {
-    let half = 0.5 * angle;
-    let upper = points.partition_point(|p| p.angle < half);
-    if upper == 0 || upper == points.len() {
-        let Specimen { length, width } = specimen;
-        let (sin, cos) = half.sin_cos();
-        let whole = (length / width - 1.0) * force * (cos - sin)
-            / ((2.0 * length - 3.0 * width) * angle.cos() + 0.5 * width * cos);
-        return 0.5 * whole;
+/// Normalised shear forces \[N/m\] by rising angles \[rad\] from zero on, of forces \[N\]: each needs the one at half its angle, which
+/// comes from those before by linear interpolation.
+fn normalised(specimen: Specimen, angles: &[f64], forces: &[f64]) -> Vec<f64> {
+    let Specimen { length, width } = specimen;
+    let mut out: Vec<f64> = vec![0.0];
+    for k in 1..angles.len() {
+        let (sin, cos) = (0.5 * angles[k]).sin_cos();
+        let whole = (length / width - 1.0) * forces[k] * (cos - sin);
+        let middle = (2.0 * length - 3.0 * width) * angles[k].cos();
+        if k == 1 {
+            // Half of the first angle lies before all others: there the force is taken to be linear.
+            out.push(whole / (middle + 0.5 * width * cos));
+            continue;
+        }
+        let half = 0.5 * angles[k];
+        let upper = angles.partition_point(|angle| *angle < half).clamp(1, k - 1);
+        let part = (half - angles[upper - 1]) / (angles[upper] - angles[upper - 1]);
+        let beside = out[upper - 1] + part * (out[upper] - out[upper - 1]);
+        out.push((whole - width * beside * cos) / middle);
     }
-    let (a, b) = (&points[upper - 1], &points[upper]);
-    a.shear_force + (half - a.angle) / (b.angle - a.angle) * (b.shear_force - a.shear_force)
+    out
 }
 
 /// By how much the angle between weft and warp is less than a right one in the middle \[rad\].
@@ -117,6 +135,24 @@ fn seen(rig: &Rig) -> f64 {
 mod tests {
     use super::*;
     use wale::energy::{BendingStiffness, MembraneStiffness};
+
+    #[test]
+    fn the_formula_undoes_the_work_of_the_three_zones() {
+        // Stiff yarns with F_s(γ) = 20 sin γ + 5 sin³γ: the middle, ½W(2H − 3W), and W² at half the angle do all the work, while the
+        // clamps travel √2 (H − W) cos(π/4 − γ/2).
+        let law = |g: f64| 20.0 * g.sin() + 5.0 * g.sin().powi(3);
+        let (h, w) = (0.15, 0.05);
+        let angles: Vec<f64> = (0..=200).map(|k| 0.7 * f64::from(k) / 200.0).collect();
+        let force = |g: &f64| {
+            let work = 0.5 * w * (2.0 * h - 3.0 * w) * law(*g) * g.cos() + 0.5 * w * w * law(0.5 * g) * (0.5 * g).cos();
+            work / ((h - w) * SQRT_2 * 0.5 * (FRAC_PI_4 - 0.5 * g).sin())
+        };
+        let forces: Vec<f64> = angles.iter().map(force).collect();
+        let found = normalised(Specimen { length: h, width: w }, &angles, &forces);
+        for (angle, force) in angles.iter().zip(&found).skip(1) {
+            assert!((force / law(*angle) - 1.0).abs() < 1e-4, "{angle} {force}");
+        }
+    }
 
     #[test]
     fn stiff_yarns_shear_as_in_a_picture_frame() {

@@ -5,6 +5,7 @@
 //! unloading is zero here, or all of it comes back, and no test pretends otherwise. Definitions and sources: `docs/topics/virtual-tests.md`.
 
 pub mod bias_extension;
+pub mod bias_mesh;
 pub mod cantilever;
 pub mod drape;
 pub mod drape_mesh;

@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use wale_numerics::sparse_cholesky::CholeskyError;
+
 use crate::shell::bending_fit::distances;
 use crate::shell::pear_loop::{PearLoop, PearPoint};
 use crate::shell::{ShellCard, ShellError};
@@ -83,7 +85,11 @@ impl PearLoopTest {
             gravity: [0.0, 0.0, gravity],
             ..PearLoop::default()
         };
-        Ok(PearLoopResult { points: test.run(card, &self.distances)? })
+        let points = test.run(card, &self.distances).map_err(|error| match error {
+            ShellError::Cholesky(CholeskyError::NotPositiveDefinite { .. }) => ShellError::Unstable("a loop".into()),
+            other => other,
+        })?;
+        Ok(PearLoopResult { points })
     }
 }
 
@@ -95,12 +101,16 @@ mod tests {
     #[test]
     fn weight_draws_a_loop_long_and_clamps_side_by_side_make_a_pear() {
         let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 300.0, ss: 60.0, n1: 2.0, n2: 4.0 };
-        let card = ShellCard { membrane, bending: BendingStiffness::isotropic(1e-5), areal_mass: 0.2 };
+        let card = ShellCard { membrane, bending: BendingStiffness::isotropic(2e-5), areal_mass: 0.2 };
         let test = PearLoopTest { distances: vec![0.01], width: 0.02, ..PearLoopTest::default() };
         let aspect =
             |hanging, clamps| PearLoopTest { hanging, clamps, ..test.clone() }.run(&card).unwrap().points[0].aspect;
         let facing = [Hanging::Up, Hanging::Weightless, Hanging::Down].map(|hanging| aspect(hanging, Clamps::Facing));
         assert!(facing[0] < facing[1] && facing[1] < facing[2], "{facing:?}");
         assert!(aspect(Hanging::Down, Clamps::SideBySide) > facing[2]);
+        // A limp loop does not stand on its clamps.
+        let limp = ShellCard { bending: BendingStiffness::isotropic(1e-6), ..card };
+        let fallen = PearLoopTest { hanging: Hanging::Up, ..test }.run(&limp);
+        assert!(matches!(fallen, Err(ShellError::Unstable(_) | ShellError::NotAtRest { .. })), "{fallen:?}");
     }
 }

@@ -1,7 +1,10 @@
 //! A rectangle of cloth between two clamps, flat, one of which is moved along and across the pull.
 
+use std::f64::consts::FRAC_PI_4;
+
 use wale::fabric::coordinates::BLOCK;
 
+use super::bias_mesh::bias_rectangle;
 use crate::shell::error::{ShellError, positive};
 use crate::shell::mesh::Rectangle;
 use crate::shell::rest::{RestSettings, advance_load};
@@ -42,12 +45,16 @@ pub struct Rig {
 }
 
 impl Rig {
-    /// Clamps a specimen that was cut with its length at `angle` \[rad\] from the weft towards the warp. It stays flat.
+    /// Clamps a specimen that was cut with its length at `angle` \[rad\] from the weft towards the warp. It stays flat. On the
+    /// bias its mesh has edges along both yarns.
     ///
     /// # Errors
     /// [`ShellError`]: a card or a size that is of no use.
     pub fn new(card: &ShellCard, specimen: Specimen, angle: f64, edge: f64) -> Result<Self, ShellError> {
-        let rectangle = Rectangle::new(specimen.length, specimen.width, edge)?;
+        let Specimen { length, width } = specimen;
+        let on_bias = (angle - FRAC_PI_4).abs() < 1e-6;
+        let rectangle =
+            if on_bias { bias_rectangle(length, width, edge)? } else { Rectangle::new(length, width, edge)? };
         let mut held = vec![[false, false, true]; rectangle.mesh.points.len()];
         for end in rectangle.ends() {
             held[end].fill([true; 3]);
