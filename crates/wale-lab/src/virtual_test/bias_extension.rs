@@ -154,19 +154,48 @@ mod tests {
         }
     }
 
+    /// What the least energy makes of a specimen three times as long as wide, of yarns that do not stretch and shear that is linear,
+    /// over what the zones of the formula make of it: shear in a patch at the middle, and force.
+    ///
+    /// Displacements along each yarn depend on its own place alone, so shear is `f′(q) + f′(p)` with `f′ = 0` on yarns that touch a
+    /// clamp; with `a = W/√2` free yarns have `q` from `a/2` to `5a/2` and cross those with `|p − q| < a`. The least of
+    /// `∫∫ (f′(q) + f′(p))²` at a given travel `∫ f′` has `2a f′(q) + ∫ f′(p) dp = λ`.
+    fn least_energy() -> [f64; 2] {
+        let n = 400;
+        let place = |k: usize| 0.5 + 2.0 * (k as f64 + 0.5) / n as f64;
+        let (step, mut f) = (2.0 / n as f64, vec![0.5; n]);
+        let crossing = |f: &[f64], k: usize| {
+            (0..n).filter(|&j| (place(j) - place(k)).abs() < 1.0).map(|j| f[j] * step).sum::<f64>()
+        };
+        for _ in 0..200 {
+            // Halfway to what the condition asks for, with λ such that the travel is that of f′ = ½ everywhere.
+            let asked: Vec<f64> = (0..n).map(|k| 0.5 * (1.0 - crossing(&f, k))).collect();
+            let off = 0.5 - asked.iter().sum::<f64>() / n as f64;
+            f.iter_mut().zip(&asked).for_each(|(f, asked)| *f += 0.5 * (asked + off - *f));
+        }
+        let energy = |f: &[f64]| (0..n).map(|k| f[k] * (2.0 * f[k] + crossing(f, k)) * step).sum::<f64>();
+        // A quarter of the width about the middle, as a camera sees it.
+        let patch: Vec<f64> = (0..n).filter(|&k| (place(k) - 1.5).abs() < 0.3).map(|k| 2.0 * f[k]).collect();
+        [patch.iter().sum::<f64>() / patch.len() as f64, energy(&f) / energy(&vec![0.5; n])]
+    }
+
     #[test]
-    fn stiff_yarns_shear_as_in_a_picture_frame() {
+    fn stiff_yarns_shear_nearly_as_in_a_picture_frame() {
         let (stiff, k_ss) = (3e4, 20.0);
         let membrane = MembraneStiffness { xx: stiff, xy: 0.0, yy: stiff, ss: k_ss, n1: 0.0, n2: 0.0 };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 };
         let test = BiasExtensionTest { largest: 30.0 * DEG, points: 12, ..BiasExtensionTest::default() };
         let found = test.run(&card).unwrap();
+        let [shear, force] = least_energy();
+        assert!((shear - 0.818).abs() < 2e-3 && (force - 0.988).abs() < 1e-3, "{shear} {force}");
         for point in &found.points[1..] {
-            // The frame's F_s/L is k_ss sin γ without area terms.
+            // The frame's F_s/L is k_ss sin γ without area terms. Yarns that stretch a little give way by a layer of √(k_ss/k_xx).
             let frame = k_ss * point.angle.sin();
-            assert!((point.shear_force / frame - 1.0).abs() < 0.08, "{} {frame} {point:?}", point.angle.to_degrees());
-            assert!((point.seen_angle / point.angle - 1.0).abs() < 0.05, "{point:?}");
+            let layer = (k_ss / stiff).sqrt();
+            assert!((point.shear_force / frame - force).abs() < layer, "{} {point:?}", point.shear_force / frame);
         }
+        let first = &found.points[1];
+        assert!((first.seen_angle / first.angle - shear).abs() < 0.03, "{first:?}");
         assert!(BiasExtensionTest { specimen: Specimen { length: 0.09, width: 0.05 }, ..test }.run(&card).is_err());
     }
 }
