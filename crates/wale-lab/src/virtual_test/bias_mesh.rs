@@ -34,8 +34,8 @@ pub fn bias_rectangle(length: f64, width: f64, edge: f64) -> Result<Rectangle, S
     let (mut points, mut rows) = (Vec::new(), Vec::new());
     for row in 0..=2 * along {
         let start = points.len();
-        let x = length * row as f64 / (2 * along) as f64;
-        points.extend((row % 2..=2 * across).step_by(2).map(|j| [x, width * j as f64 / (2 * across) as f64]));
+        let x = length * (row as f64 / (2 * along) as f64);
+        points.extend((row % 2..=2 * across).step_by(2).map(|j| [x, width * (j as f64 / (2 * across) as f64)]));
         rows.push(start..points.len());
     }
     let vertex = |row: usize, j: usize| (rows[row].start + j / 2) as u32;
@@ -75,7 +75,7 @@ mod tests {
             assert_eq!(mesh.points.len() + mesh.triangles.len(), 3 * mesh.triangles.len() - inner + 1);
             let middle = rectangle.middle();
             assert_eq!(mesh.points[middle.start][1], 0.0);
-            assert!((mesh.points[middle.end - 1][0] - 0.5 * length).abs() < 1e-15);
+            assert!((mesh.points[middle.end - 1][0] - 0.5 * length).abs() < 1e-12);
             assert_eq!(mesh.points[middle.end - 1][1], width);
             // Two sides of each triangle lie within three degrees of a yarn.
             for t in &mesh.triangles {

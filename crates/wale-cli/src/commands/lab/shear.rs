@@ -7,13 +7,13 @@ use wale_lab::virtual_test::{BiasExtensionTest, KesShearTest, PictureFrameTest};
 
 use super::card::Card;
 use super::report::{Group, Number, Report, digits, direction_name};
-use super::{directions, in_directions, line};
+use super::{in_directions, line};
 use crate::arguments::lab::{BiasExtension, Directed, PictureFrame};
 
 pub fn kes_shear(card: &Card, of: &Directed) -> Result<Report, ShellError> {
-    let found = in_directions(&directions(&of.direction), |angle| {
-        KesShearTest { angle, ..KesShearTest::default() }.run(&card.shell)
-    })?;
+    // On the bias shear compresses yarns, which a specimen that is kept flat may not bear: only who asks gets it.
+    let asked = if of.direction.is_empty() { vec![0.0, 90f64.to_radians()] } else { of.direction.clone() };
+    let found = in_directions(&asked, |angle| KesShearTest { angle, ..KesShearTest::default() }.run(&card.shell))?;
     let groups = found.iter().map(|(angle, found)| Group {
         name: format!("pulled along the {}", direction_name(*angle)),
         direction: Some(*angle),
