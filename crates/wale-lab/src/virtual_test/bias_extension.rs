@@ -1,4 +1,4 @@
-//! The bias extension test: a strip on the bias between clamps shears in its middle as in a picture frame [Cao2008].
+//! The bias extension test: a strip on the bias between clamps shears in its middle as in a picture frame \[Cao2008\].
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, SQRT_2};
 
@@ -56,7 +56,7 @@ impl BiasExtensionTest {
     ///
     /// Of a specimen of length `H` and width `W` of stiff yarns the middle, `½W(2H − 3W)`, is sheared by `γ`, `W²` beside it by `γ/2`,
     /// and the rest not at all; the work of the clamps gives
-    /// `F_s(γ) = [(H/W − 1) F (cos γ/2 − sin γ/2) − W F_s(γ/2) cos γ/2] / ((2H − 3W) cos γ)`      [Cao2008]
+    /// `F_s(γ) = [(H/W − 1) F (cos γ/2 − sin γ/2) − W F_s(γ/2) cos γ/2] / ((2H − 3W) cos γ)`      \[Cao2008\]
     ///
     /// # Errors
     /// [`ShellError`]: an impossible number, or a specimen that does not come to rest.

@@ -1,4 +1,4 @@
-//! Pure bending test of KES-FB2 [Kawabata1980]: a specimen 20 cm wide, 1 cm from clamp to clamp, is bent to ±2.5 cm⁻¹.
+//! Pure bending test of KES-FB2 \[Kawabata1980\]: a specimen 20 cm wide, 1 cm from clamp to clamp, is bent to ±2.5 cm⁻¹.
 
 use wale::fabric::coordinates::BLOCK;
 

@@ -1,4 +1,4 @@
-//! Shear test of KES-FB1 [Kawabata1980]: a specimen 20 cm wide and 5 cm long, pulled by 10 gf/cm, is sheared to ±8°.
+//! Shear test of KES-FB1 \[Kawabata1980\]: a specimen 20 cm wide and 5 cm long, pulled by 10 gf/cm, is sheared to ±8°.
 
 use super::rig::{Rig, Specimen};
 use super::units::{DEG, GF_PER_CM};

@@ -1,4 +1,4 @@
-//! Tensile test of KES-FB1 [Kawabata1980]: a specimen 20 cm wide and 5 cm long is drawn to 500 gf/cm.
+//! Tensile test of KES-FB1 \[Kawabata1980\]: a specimen 20 cm wide and 5 cm long is drawn to 500 gf/cm.
 
 use super::rig::{Rig, Specimen};
 use super::units::GF_PER_CM;

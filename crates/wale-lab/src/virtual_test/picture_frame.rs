@@ -1,4 +1,4 @@
-//! The picture frame: four hinged bars as long as the yarns between them shear a square of cloth uniformly [Cao2008].
+//! The picture frame: four hinged bars as long as the yarns between them shear a square of cloth uniformly \[Cao2008\].
 
 use std::f64::consts::FRAC_PI_4;
 

@@ -15,8 +15,8 @@ const PROMINENCE: f64 = 0.02;
 pub fn covered_area(triangles: &[[[f64; 2]; 3]]) -> f64 {
     let bound = |of: fn(f64, f64) -> f64, start: f64| triangles.iter().flatten().fold(start, |m, p| of(m, p[1]));
     let (low, high) = (bound(f64::min, f64::INFINITY), bound(f64::max, f64::NEG_INFINITY));
-    // Written so that nothing has no area.
-    if !(high > low) {
+    // Of no triangles the bounds are the wrong way round.
+    if low >= high || !(high - low).is_finite() {
         return 0.0;
     }
     let step = (high - low) / LINES as f64;
