@@ -6,6 +6,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::machine::parse_size;
 
+pub mod lab;
+pub mod register;
+
 /// Yarn-level simulation of knitted cloth: from a stitch chart to moving fabric.
 ///
 /// Begin with `wale new swatch.toml`, look at it with `wale check swatch.toml`, and run it with
@@ -40,7 +43,9 @@ pub enum Command {
     /// Fit a thin shell to the measured curves of a fabric file; write its card, curves and a report
     Fit(Fit),
     /// Write a page on which yarns are laid over photographs of a swatch, to make a yarn tile
-    Register(crate::arguments_register::Register),
+    Register(register::Register),
+    /// Do a virtual textile test on the thin shell of a fabric: KES, FAST, cantilever, drape, …
+    Lab(lab::Lab),
     /// Count loops, nodes and yarn of a scene or a run
     Inspect(Inspect),
     /// Draw frames of a run as PNG pictures

@@ -5,7 +5,6 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod arguments;
-mod arguments_register;
 mod bench;
 mod commands;
 mod estimate;
@@ -32,6 +31,7 @@ fn main() -> ExitCode {
         Command::Relax(arguments) => commands::relax::relax(arguments),
         Command::Fit(arguments) => commands::fit::fit(arguments),
         Command::Register(arguments) => commands::register::register(arguments),
+        Command::Lab(arguments) => commands::lab::lab(arguments),
         Command::Inspect(arguments) => commands::inspect::inspect(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
         Command::Plot(arguments) => commands::plot::plot(arguments),

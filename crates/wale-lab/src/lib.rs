@@ -8,5 +8,6 @@ pub mod fabric_fit;
 pub mod least_squares;
 pub mod register;
 pub mod shell;
+pub mod virtual_test;
 pub mod yarn_fit;
 pub mod yarn_tile;

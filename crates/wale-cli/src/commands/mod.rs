@@ -5,6 +5,7 @@ pub mod check;
 pub mod export;
 pub mod fit;
 pub mod inspect;
+pub mod lab;
 pub mod new;
 pub mod pattern_pictures;
 pub mod patterns;

@@ -8,7 +8,7 @@ use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
 use wale_lab::register::{MOST_BYTES, Photograph, RegisterPage};
 
-use crate::arguments_register::Register;
+use crate::arguments::register::Register;
 use crate::exit::{Code, Failure};
 use crate::say;
 

@@ -109,6 +109,16 @@ impl Cantilever {
 
     /// Slope of the line from the edge to the end of a strip \[rad\].
     fn slope_of(&self, card: &ShellCard, overhang: f64) -> Result<f64, ShellError> {
+        let profile = self.profile(card, overhang)?;
+        let [x, z] = profile[profile.len() - 1];
+        Ok((-z).atan2(x))
+    }
+
+    /// How a strip hangs that reaches so far over the edge \[m\]: from behind the edge to its end, along and up from the edge \[m\].
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn profile(&self, card: &ShellCard, overhang: f64) -> Result<Vec<[f64; 2]>, ShellError> {
         let strips = 2 * (self.rows.max(4) / 2);
         // The edge lies in the middle of the first row of triangles, as the clamps of a pear loop do.
         let step = overhang / (strips as f64 - 0.5);
@@ -134,10 +144,10 @@ impl Cantilever {
             }
             other => other,
         })?;
-        let [_, end] = rectangle.ends();
-        let count = end.len() as f64;
-        let mean = |axis: usize| end.clone().map(|v| q[BLOCK * v + axis]).sum::<f64>() / count;
-        Ok((-mean(2)).atan2(mean(0)))
+        let mean = |row: &std::ops::Range<usize>, axis: usize| {
+            row.clone().map(|v| q[BLOCK * v + axis]).sum::<f64>() / row.len() as f64
+        };
+        Ok(rectangle.rows.iter().map(|row| [mean(row, 0), mean(row, 2)]).collect())
     }
 }
 

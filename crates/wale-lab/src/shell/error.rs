@@ -32,6 +32,9 @@ pub enum ShellError {
         /// Largest force left, over the largest that an element exerts \[–\].
         residual: f64,
     },
+    /// All forces balance, but the least push would make the shell leave: a loop that stands too tall, a sheet that sags evenly.
+    #[error("{0} is at rest but would not stay so: the least push makes it fall or fold")]
+    Unstable(String),
     /// No deformation has zero stress across the strip: it collapses to no width.
     #[error("a strip stretched by {stretch} collapses: without k_n2 nothing keeps its width")]
     Collapsed {

@@ -19,6 +19,14 @@ const MOST_VERTICES: f64 = 2e6;
 /// [`ShellError::Mesh`] if the outline has less than three corners, crosses itself, or bounds nothing;
 /// [`ShellError::Number`] if the edge length is not positive.
 pub fn mesh_polygon(outline: &[[f64; 2]], edge: f64) -> Result<TriangleMesh, ShellError> {
+    mesh_polygon_through(outline, &[], edge)
+}
+
+/// The same with vertices at given places inside \[m\], which lie about an edge apart: a line along which the piece is held.
+///
+/// # Errors
+/// As [`mesh_polygon`].
+pub fn mesh_polygon_through(outline: &[[f64; 2]], through: &[[f64; 2]], edge: f64) -> Result<TriangleMesh, ShellError> {
     positive("edge length of the mesh", edge)?;
     let area = enclosed_area(outline).abs();
     let equilateral = 0.25 * 3f64.sqrt() * edge * edge;
@@ -47,7 +55,7 @@ pub fn mesh_polygon(outline: &[[f64; 2]], edge: f64) -> Result<TriangleMesh, She
         }
         triangulation.add_constraint(from, to);
     }
-    for [x, y] in lattice_inside(&border, edge) {
+    for [x, y] in through.iter().copied().chain(lattice_inside(&border, through, edge)) {
         triangulation.insert(Point2::new(x, y)).map_err(|e| failed(&e))?;
     }
     let settings = RefinementParameters::new()
@@ -94,8 +102,8 @@ fn subdivided(outline: &[[f64; 2]], edge: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// Points of a lattice of equilateral triangles inside an outline, those near it left out.
-fn lattice_inside(border: &[[f64; 2]], edge: f64) -> Vec<[f64; 2]> {
+/// Points of a lattice of equilateral triangles inside an outline, those near it or near other points left out.
+fn lattice_inside(border: &[[f64; 2]], others: &[[f64; 2]], edge: f64) -> Vec<[f64; 2]> {
     let bound = |axis: usize, of: fn(f64, f64) -> f64, start: f64| border.iter().fold(start, |m, p| of(m, p[axis]));
     let (left, right) = (bound(0, f64::min, f64::INFINITY), bound(0, f64::max, f64::NEG_INFINITY));
     let (bottom, top) = (bound(1, f64::min, f64::INFINITY), bound(1, f64::max, f64::NEG_INFINITY));
@@ -113,7 +121,7 @@ fn lattice_inside(border: &[[f64; 2]], edge: f64) -> Vec<[f64; 2]> {
             .map(|(a, b)| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
             .collect();
         crossings.sort_by(f64::total_cmp);
-        let near: Vec<&[f64; 2]> = border.iter().filter(|p| (p[1] - y).abs() < edge).collect();
+        let near: Vec<&[f64; 2]> = border.iter().chain(others).filter(|p| (p[1] - y).abs() < edge).collect();
         for column in 0..=columns {
             let x = left + (column as f64 + 0.5 * (row % 2) as f64) * edge;
             let inside = crossings.partition_point(|&crossing| crossing < x) % 2 == 1;

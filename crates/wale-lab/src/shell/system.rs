@@ -27,6 +27,8 @@ pub struct ShellSystem {
     hinges: Elements<Hinge, 12>,
     /// Energy of each hinge by each bending stiffness, over the square of its angle \[–\].
     hinge_shares: Vec<[f64; BendingStiffness::COUNT]>,
+    /// Mass of each vertex \[kg\].
+    masses: Vec<f64>,
     /// Weight of each slot \[N\].
     weight: Vec<f64>,
     free: Vec<bool>,
@@ -69,15 +71,13 @@ impl ShellSystem {
             [cos * x - sin * y, sin * x + cos * y]
         };
         let edges = mesh.inner_edges()?;
-        let mut weight = vec![0.0; BLOCK * mesh.points.len()];
+        let mut masses = vec![0.0; mesh.points.len()];
         let mut membranes = Elements::default();
         for t in &mesh.triangles {
             let element = Membrane::new(card.membrane, t.map(fabric))
                 .ok_or_else(|| ShellError::Mesh(format!("triangle {t:?} has no area")))?;
             for &v in t {
-                for (i, g) in gravity.iter().enumerate() {
-                    weight[BLOCK * v as usize + i] += card.areal_mass * element.area / 3.0 * g;
-                }
+                masses[v as usize] += card.areal_mass * element.area / 3.0;
             }
             membranes.push(element, std::array::from_fn(|k| slot(BLOCK * t[k / 3] as usize + k % 3)));
         }
@@ -124,9 +124,10 @@ impl ShellSystem {
         } else {
             edges.iter().map(length).sum::<f64>() / edges.len() as f64
         };
-        Ok(Self {
+        let mut system = Self {
             hinge_shares,
-            weight,
+            weight: vec![0.0; free.len()],
+            masses,
             matrix: BlockMatrix::zeros(pattern),
             factor,
             places,
@@ -138,7 +139,16 @@ impl ShellSystem {
             free,
             membranes,
             hinges,
-        })
+        };
+        system.set_gravity(gravity);
+        Ok(system)
+    }
+
+    /// Puts the piece under another gravity \[m/s²\].
+    pub fn set_gravity(&mut self, gravity: [f64; 3]) {
+        for (slots, mass) in self.weight.chunks_exact_mut(BLOCK).zip(&self.masses) {
+            slots.iter_mut().zip(gravity).for_each(|(weight, g)| *weight = mass * g);
+        }
     }
 
     /// Which slots are unknowns.

@@ -1,0 +1,258 @@
+//! The command line of `wale lab`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as PlainError, StrDeserializer};
+use wale::scene::dimensions::{Angle, Length, Ratio};
+use wale::scene::units::{Any, Bounds, Dimension, Positive, Quantity};
+use wale_lab::card_file::SheetBending;
+use wale_lab::fabric_file::ArealMass;
+
+/// `wale lab`
+#[derive(Debug, Args)]
+pub struct Lab {
+    /// The test.
+    #[command(subcommand)]
+    pub test: Test,
+}
+
+/// Virtual textile tests.
+#[derive(Debug, Subcommand)]
+pub enum Test {
+    /// A swatch between clamps, 10 × 6 cm to 5 N
+    Stretch(Stretch),
+    /// The strip of ISO 13934-1, 200 × 50 mm; it does not break
+    Strip(Stretch),
+    /// KES-FB1 tensile: LT, WT, RT, EMT
+    KesTensile(Directed),
+    /// KES-FB1 shear: G, 2HG, 2HG5
+    KesShear(Directed),
+    /// KES-FB2 pure bending: B, 2HB
+    KesBending(Directed),
+    /// Cantilever of ASTM D1388: overhang, bending length, rigidity
+    Cantilever(Cantilever),
+    /// Pear loops: height over width by distance of the clamps
+    PearLoop(PearLoop),
+    /// Drape test of Cusick: drape coefficient, nodes, areas
+    Drape(Drape),
+    /// Picture frame: shear force by angle
+    PictureFrame(PictureFrame),
+    /// Bias extension: shear force by angle
+    BiasExtension(BiasExtension),
+    /// FAST-2 and FAST-3: bending, extension at 5, 20, 100 gf/cm, formability, shear rigidity
+    Fast(Common),
+}
+
+/// What all tests share.
+#[derive(Debug, Args)]
+pub struct Common {
+    /// Fabric file whose card `wale fit` has made, or a card
+    pub fabric: PathBuf,
+    /// Folder for table, plot and numbers; left out, beside the file and named after it, with `.lab`
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// Overwrite this test's files in that folder
+    #[arg(long)]
+    pub force: bool,
+    /// Print JSON, in SI units
+    #[arg(long)]
+    pub json: bool,
+    /// Threads; all cores if left out. Results do not depend on it
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Mass by area in place of the card's, such as "170 g/m^2"
+    #[arg(long, value_name = "MASS", value_parser = positive::<ArealMass>)]
+    pub areal_mass: Option<f64>,
+    /// Bending rigidity B, as instruments report it, in all directions in place of the card's, such as "0.05 gf cm^2/cm"
+    #[arg(long, value_name = "RIGIDITY", value_parser = positive::<SheetBending>)]
+    pub bending: Option<f64>,
+}
+
+/// A test that has a direction and no other choice.
+#[derive(Debug, Args)]
+pub struct Directed {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub common: Common,
+    /// weft (course), bias, warp (wale), or an angle from the weft such as "30 deg"; may be repeated. All three if left out
+    #[arg(long, value_name = "DIRECTION", value_parser = direction, allow_hyphen_values = true)]
+    pub direction: Vec<f64>,
+}
+
+/// Of a rectangular specimen.
+#[derive(Debug, Args)]
+pub struct Size {
+    /// Length of the specimen, such as "10 cm"
+    #[arg(long, value_parser = positive::<Length>)]
+    pub length: Option<f64>,
+    /// Width of the specimen
+    #[arg(long, value_parser = positive::<Length>)]
+    pub width: Option<f64>,
+}
+
+/// `wale lab stretch`, `wale lab strip`
+#[derive(Debug, Args)]
+pub struct Stretch {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub directed: Directed,
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub size: Size,
+    /// Stretch at which to end, such as "30 %"; left out, 5 N of a swatch 6 cm wide, 500 gf/cm of a strip
+    #[arg(long, value_name = "STRETCH", value_parser = positive::<Ratio>)]
+    pub to: Option<f64>,
+    /// Let it leave its plane and wrinkle; needs bending
+    #[arg(long)]
+    pub wrinkle: bool,
+}
+
+/// `wale lab cantilever`
+#[derive(Debug, Args)]
+pub struct Cantilever {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub directed: Directed,
+    /// Width of the strip; 25 mm if left out
+    #[arg(long, value_parser = positive::<Length>)]
+    pub width: Option<f64>,
+    /// Slope to which the end sinks
+    #[arg(long, default_value = "41.5 deg", value_parser = positive::<Angle>)]
+    pub slope: f64,
+}
+
+/// `wale lab pear-loop`
+#[derive(Debug, Args)]
+pub struct PearLoop {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub directed: Directed,
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub size: Size,
+    /// Distance of the clamps, such as "10 mm"; may be repeated. Seven from 3 to 34 mm if left out
+    #[arg(long, value_parser = positive::<Length>)]
+    pub distance: Vec<f64>,
+    /// Which way the weight pulls the loop
+    #[arg(long, value_enum, default_value_t = Gravity::Down)]
+    pub gravity: Gravity,
+    /// How the clamps hold the strip
+    #[arg(long, value_enum, default_value_t = Clamps::Facing)]
+    pub clamps: Clamps,
+}
+
+/// Which way weight pulls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Gravity {
+    /// The loop hangs from the clamps
+    Down,
+    /// The loop stands on the clamps
+    Up,
+    /// The loop has no weight
+    None,
+}
+
+/// How clamps hold a strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Clamps {
+    /// The strip leaves them towards each other
+    Facing,
+    /// The strip leaves them side by side, downward
+    SideBySide,
+}
+
+/// `wale lab drape`
+#[derive(Debug, Args)]
+pub struct Drape {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub common: Common,
+    /// Diameter of the specimen: 24 cm for limp fabrics, 36 cm for stiff ones
+    #[arg(long, default_value = "30 cm", value_parser = positive::<Length>)]
+    pub specimen: f64,
+    /// Diameter of the support
+    #[arg(long, default_value = "18 cm", value_parser = positive::<Length>)]
+    pub support: f64,
+    /// Edge length of the mesh
+    #[arg(long, default_value = "7 mm", value_parser = positive::<Length>)]
+    pub edge: f64,
+    /// Drapes from so many different small pushes; folds depend on them
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub starts: u32,
+}
+
+/// `wale lab picture-frame`
+#[derive(Debug, Args)]
+pub struct PictureFrame {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub directed: Directed,
+    /// Length of the bars
+    #[arg(long, default_value = "20 cm", value_parser = positive::<Length>)]
+    pub side: f64,
+    /// Largest angle of shear
+    #[arg(long, default_value = "45 deg", value_parser = positive::<Angle>)]
+    pub to: f64,
+}
+
+/// `wale lab bias-extension`
+#[derive(Debug, Args)]
+pub struct BiasExtension {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub common: Common,
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub size: Size,
+    /// Largest angle of shear
+    #[arg(long, default_value = "40 deg", value_parser = positive::<Angle>)]
+    pub to: f64,
+}
+
+/// A quantity with its unit, in SI.
+fn quantity<D: Dimension, B: Bounds>(text: &str) -> Result<f64, String> {
+    let source: StrDeserializer<'_, PlainError> = text.into_deserializer();
+    // What scene files add on a line of its own stands after a colon here.
+    Quantity::<D, B>::deserialize(source).map(Quantity::si).map_err(|error| error.to_string().replace('\n', ": "))
+}
+
+fn positive<D: Dimension>(text: &str) -> Result<f64, String> {
+    quantity::<D, Positive>(text)
+}
+
+/// The angle of a direction from the weft \[rad\].
+fn direction(text: &str) -> Result<f64, String> {
+    let degrees = match text {
+        "weft" | "course" => 0.0,
+        "bias" => 45.0,
+        "warp" | "wale" => 90.0,
+        _ => quantity::<Angle, Any>(text)
+            .ok()
+            .map(f64::to_degrees)
+            .filter(|angle| (-90.0..=180.0).contains(angle))
+            .ok_or("write weft, bias, warp, or an angle such as \"30 deg\"")?,
+    };
+    Ok(degrees.to_radians())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_and_sizes_are_read_with_their_units() {
+        assert_eq!(direction("wale"), Ok(90f64.to_radians()));
+        assert!((direction("30 deg").unwrap().to_degrees() - 30.0).abs() < 1e-12);
+        assert!(direction("weave").unwrap_err().contains("30 deg"));
+        assert!(direction("300 deg").is_err());
+        assert!((positive::<Length>("5 cm").unwrap() - 0.05).abs() < 1e-15);
+        assert!((positive::<SheetBending>("1 gf cm^2/cm").unwrap() - 9.806_65e-5).abs() < 1e-18);
+        for bad in ["5", "-5 cm", "cm", "0 m"] {
+            let error = positive::<Length>(bad).unwrap_err();
+            assert!(!error.contains('\n') && !error.is_empty(), "{bad}: {error}");
+        }
+    }
+}

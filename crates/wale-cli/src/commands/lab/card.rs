@@ -1,0 +1,118 @@
+//! The card that a test is made with.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use wale::energy::{BendingStiffness, MembraneStiffness};
+use wale::scene::TextFile;
+use wale_lab::card_file::ShellCardFile;
+use wale_lab::fabric_file::{FabricFile, FabricFileError};
+use wale_lab::shell::ShellCard;
+
+use crate::arguments::lab::Common;
+use crate::exit::{Code, Failure};
+use crate::opened::scene_failure;
+
+/// Beyond this factor a stiffness counts as not determined.
+const DETERMINED: f64 = 3.0;
+
+/// A card as a test takes it.
+#[derive(Debug)]
+pub struct Card {
+    /// What the fabric is called.
+    pub title: String,
+    /// Its numbers; weight and bending are zero where they are not known and not needed.
+    pub shell: ShellCard,
+    /// What is to be known of the card when its numbers are read.
+    pub remarks: Vec<String>,
+}
+
+/// What a test needs beside in-plane stiffnesses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// Bending stiffness.
+    pub bending: bool,
+    /// Mass by area.
+    pub mass: bool,
+}
+
+/// Only these tell a card from a fabric file.
+#[derive(Deserialize)]
+struct Peek {
+    shell: Option<IgnoredAny>,
+}
+
+/// Finds the card of a fabric file, or reads the card that is given.
+///
+/// # Errors
+/// If there is none, it is damaged, or it lacks what the test needs.
+pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
+    let path = &arguments.fabric;
+    let file = TextFile::read(path, "fabric file or card").map_err(scene_failure)?;
+    let peek: Peek = file.parse().map_err(scene_failure)?;
+    let (file, place) = if peek.shell.is_some() {
+        (file, path.clone())
+    } else {
+        // That it is a fabric file at all is said before what is missing beside it.
+        FabricFile::read(path).map_err(|error| match error {
+            FabricFileError::Fabric(error) => scene_failure(error),
+            FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
+        })?;
+        let fitted = fitted(path)?;
+        (TextFile::read(&fitted, "card").map_err(scene_failure)?, fitted)
+    };
+    let card = ShellCardFile::of(&file).map_err(scene_failure)?;
+    let lacks = |what: &str, option: &str| {
+        let mend = "add [[bending]] loops and areal_mass to the fabric file and fit it again";
+        Failure::new(
+            Code::BadInput,
+            format_args!("{} has no {what}, which this test needs: {mend}, or give it with {option}", place.display()),
+        )
+    };
+    // B = 2k_θ.
+    let given = arguments.bending.map(|rigidity| BendingStiffness::isotropic(0.5 * rigidity));
+    let bending = given.or(card.bending);
+    if needs.bending && bending.is_none() {
+        return Err(lacks("bending stiffness", "--bending \"0.05 gf cm^2/cm\""));
+    }
+    let mass = arguments.areal_mass.or(card.areal_mass);
+    if needs.mass && mass.is_none() {
+        return Err(lacks("mass by area", "--areal-mass \"170 g/m^2\""));
+    }
+    let mut remarks = Vec::new();
+    let open: Vec<&str> = MembraneStiffness::NAMES
+        .into_iter()
+        .zip(card.membrane_within)
+        .filter(|(_, within)| within.is_nan() || *within > DETERMINED)
+        .map(|(name, _)| name)
+        .collect();
+    if !open.is_empty() {
+        remarks.push(format!("not determined by the fabric's own tests: {}", open.join(", ")));
+    }
+    if needs.bending && given.is_some() {
+        remarks.push("bending is the one given, the same in all directions".to_owned());
+    }
+    let shell = ShellCard {
+        membrane: card.membrane,
+        bending: bending.unwrap_or(BendingStiffness::isotropic(0.0)),
+        areal_mass: mass.unwrap_or(0.0),
+    };
+    shell.check().map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", place.display())))?;
+    Ok(Card { title: card.title, shell, remarks })
+}
+
+/// Where `wale fit` puts the card of a fabric file.
+fn fitted(fabric: &Path) -> Result<PathBuf, Failure> {
+    let card = fabric.with_extension("fit").join("card.toml");
+    if card.is_file() {
+        return Ok(card);
+    }
+    let message = format!(
+        "{} has no card yet, {} is not there: run `wale fit {}` first",
+        fabric.display(),
+        card.display(),
+        fabric.display()
+    );
+    Err(Failure::new(Code::BadInput, message))
+}

@@ -1,0 +1,211 @@
+//! What a virtual test reports: numbers as instruments print them and in SI, a table, a plot; and where it goes.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use serde_json::{Map, Value, json};
+use wale::picture::Plot;
+use wale::record::RecordError;
+use wale::record::atomic_file::write_atomically;
+
+use crate::exit::{Code, Failure};
+use crate::{output, say};
+
+/// A number that a test reports.
+#[derive(Clone, Debug)]
+pub struct Number {
+    /// Name and unit in SI, as a key of JSON: `B_N_m`.
+    pub key: &'static str,
+    /// In SI.
+    pub value: f64,
+    /// What the laboratory calls it.
+    pub name: &'static str,
+    /// As an instrument prints it.
+    pub shown: String,
+}
+
+impl Number {
+    /// A number that instruments print in a unit of this size in SI.
+    pub fn new(key: &'static str, value: f64, name: &'static str, unit: f64, unit_name: &str) -> Self {
+        let shown = format!("{} {unit_name}", digits(value / unit));
+        Self { key, value, name, shown: shown.trim_end().to_owned() }
+    }
+
+    /// What every elastic shell has: no result.
+    pub fn trivial(key: &'static str, value: f64, name: &'static str, shown: &str) -> Self {
+        Self { key, value, name, shown: format!("{shown}   (a shell cannot tell)") }
+    }
+}
+
+/// Numbers of one direction, or of the whole specimen.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// In words: `weft`.
+    pub name: String,
+    /// From the weft \[rad\], where there is one.
+    pub direction: Option<f64>,
+    /// The numbers.
+    pub numbers: Vec<Number>,
+}
+
+/// A file beside table and plot.
+#[derive(Clone, Debug)]
+pub struct Extra {
+    /// What follows the test's name: `-sheet.svg`.
+    pub suffix: &'static str,
+    /// What is in it.
+    pub text: String,
+}
+
+/// All that a test reports.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Name of the test on the command line.
+    pub test: &'static str,
+    /// What was done, in words.
+    pub what: String,
+    /// Numbers.
+    pub groups: Vec<Group>,
+    /// Columns of the table, with their units.
+    pub heads: Vec<&'static str>,
+    /// Its rows.
+    pub rows: Vec<Vec<f64>>,
+    /// The plot.
+    pub plot: Plot,
+    /// What the numbers do not tell.
+    pub remarks: Vec<String>,
+    /// Other files.
+    pub extras: Vec<Extra>,
+}
+
+/// Four significant digits, in full where that is short.
+pub fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let before = value.abs().log10().floor() as i32 + 1;
+    if (-3..=6).contains(&before) {
+        format!("{value:.*}", (4 - before).clamp(0, 7) as usize)
+    } else {
+        format!("{value:.3e}")
+    }
+}
+
+/// A direction in words.
+pub fn direction_name(radians: f64) -> String {
+    let degrees = radians.to_degrees();
+    for (name, known) in [("weft", 0.0), ("bias", 45.0), ("warp", 90.0)] {
+        if (degrees - known).abs() < 1e-9 {
+            return name.to_owned();
+        }
+    }
+    format!("{}°", (1e3 * degrees).round() / 1e3)
+}
+
+impl Report {
+    /// Files that it writes.
+    pub fn suffixes(extras: &[&'static str]) -> Vec<&'static str> {
+        [".csv", ".svg", ".json"].into_iter().chain(extras.iter().copied()).collect()
+    }
+
+    fn json(&self, title: &str, folder: &Path) -> Value {
+        let group = |group: &Group| {
+            let mut map = Map::new();
+            map.insert("name".to_owned(), json!(group.name));
+            if let Some(direction) = group.direction {
+                map.insert("direction_rad".to_owned(), json!(direction));
+            }
+            for number in &group.numbers {
+                map.insert(number.key.to_owned(), json!(number.value));
+            }
+            Value::Object(map)
+        };
+        json!({
+            "test": self.test,
+            "title": title,
+            "what": self.what,
+            "folder": folder,
+            "results": self.groups.iter().map(group).collect::<Vec<_>>(),
+            "columns": self.heads,
+            "rows": self.rows,
+            "remarks": self.remarks,
+        })
+    }
+
+    fn csv(&self) -> String {
+        let mut text = self.heads.join(",");
+        text.push('\n');
+        for row in &self.rows {
+            let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+            let _ = writeln!(text, "{}", cells.join(","));
+        }
+        text
+    }
+
+    /// Writes table, plot and numbers into a folder, and tells them.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn deliver(&self, title: &str, folder: &Path, as_json: bool) -> Result<(), Failure> {
+        std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
+        let svg = self.plot.to_svg().map_err(|error| Failure::new(Code::NotConverged, error))?;
+        let json = self.json(title, folder);
+        let json_text = serde_json::to_string_pretty(&json).map_err(|error| Failure::new(Code::Bug, error))? + "\n";
+        let mut files = vec![(".csv", self.csv()), (".svg", svg), (".json", json_text)];
+        files.extend(self.extras.iter().map(|extra| (extra.suffix, extra.text.clone())));
+        for (suffix, text) in &files {
+            let path = folder.join(format!("{}{suffix}", self.test));
+            write_atomically(&path, |out| std::io::Write::write_all(out, text.as_bytes()))?;
+        }
+        if as_json {
+            return output::json(&json);
+        }
+        say!("{}: {}", if title.is_empty() { "a fabric" } else { title }, self.what)?;
+        for group in &self.groups {
+            say!("  {}", group.name)?;
+            for number in &group.numbers {
+                say!("    {:<22} {}", number.name, number.shown)?;
+            }
+        }
+        for remark in &self.remarks {
+            say!("  {remark}")?;
+        }
+        let names: Vec<&str> = files.iter().map(|(suffix, _)| *suffix).collect();
+        say!("  {} ({})", folder.join(self.test).display(), names.join(", "))
+    }
+}
+
+/// That no file of this test is there yet, unless it may be overwritten.
+///
+/// # Errors
+/// [`RecordError::NotEmpty`].
+pub fn refuse_taken(folder: &Path, test: &str, suffixes: &[&str], force: bool) -> Result<(), Failure> {
+    let taken = suffixes.iter().any(|suffix| folder.join(format!("{test}{suffix}")).exists());
+    if taken && !force {
+        let mend = "there is this test in it: choose another with `--out`, or overwrite it with `--force`";
+        return Err(RecordError::NotEmpty { path: folder.to_owned(), mend }.into());
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_four_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (0.041_23, "0.04123"),
+            (1.0, "1.000"),
+            (-12.345_6, "-12.35"),
+            (123_456.0, "123456"),
+            (1e-9, "1.000e-9"),
+            (f64::NAN, "NaN"),
+        ] {
+            assert_eq!(digits(value), text);
+        }
+        assert_eq!(direction_name(45f64.to_radians()), "bias");
+        assert_eq!(direction_name(0.5), "28.648°");
+    }
+}
