@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::machine::parse_size;
 
+pub mod fit;
 pub mod lab;
 pub mod register;
 
@@ -40,8 +41,8 @@ pub enum Command {
     Resume(Resume),
     /// Bring a repeat of the fabric to rest, lying flat, and print its size
     Relax(Relax),
-    /// Fit a thin shell to the measured curves of a fabric file; write its card, curves and a report
-    Fit(Fit),
+    /// Fit a thin shell and a yarn to the measured curves of a fabric file; write its card, curves and a report
+    Fit(fit::Fit),
     /// Write a page on which yarns are laid over photographs of a swatch, to make a yarn tile
     Register(register::Register),
     /// Do a virtual textile test on the thin shell of a fabric: KES, FAST, cantilever, drape, …
@@ -197,28 +198,6 @@ pub struct Relax {
     /// card's proportions were fitted
     #[arg(long, value_parser = parse_bed)]
     pub bed: Option<f64>,
-}
-
-/// `wale fit`
-#[derive(Debug, Args)]
-pub struct Fit {
-    /// Fabric file
-    pub fabric: PathBuf,
-    /// Folder for the card, the curves and the report; left out, beside the fabric file and named after it
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
-    /// Overwrite what is in that folder
-    #[arg(long)]
-    pub force: bool,
-    /// Only read the fabric file and its tables, and say how they were understood
-    #[arg(long)]
-    pub read_only: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Threads; all cores if left out
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
 }
 
 /// `wale inspect`

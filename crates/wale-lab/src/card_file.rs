@@ -3,12 +3,13 @@
 use std::fmt::Write;
 
 use serde::Deserialize;
-use wale::energy::{BendingStiffness, MembraneStiffness};
-use wale::scene::dimensions::ForcePerLength;
-use wale::scene::units::{Any, Dimension, Positive, Quantity};
+use wale::energy::{BendingStiffness, ContactPhase, ContactReading, MembraneStiffness};
+use wale::scene::dimensions::{BendingStiffness as BendingOfYarn, Force, ForcePerLength, Length, Pressure, Ratio};
+use wale::scene::units::{Any, Dimension, NotNegative, Positive, Quantity};
 use wale::scene::{SceneError, TextFile};
 
 use crate::fabric_file::ArealMass;
+use crate::yarn_tile::{RodMaterial, RodParameter};
 
 /// Version of the format.
 pub const SCHEMA: u32 = 1;
@@ -26,9 +27,21 @@ impl Dimension for SheetBending {
     const LARGEST: f64 = 10.0;
 }
 
-/// A fabric as a thin shell, as far as its tests told.
+/// The yarn of a fabric, in full contact.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ShellCardFile {
+pub struct YarnCard {
+    /// What it is made of.
+    pub material: RodMaterial,
+    /// Factors within which its numbers are known with 95 % confidence, in the order of `RodParameter::ALL`; one where a number was
+    /// held, infinite where the data do not say.
+    pub within: [f64; RodParameter::COUNT],
+    /// The file with its tile and rest shapes, beside the card.
+    pub tile: String,
+}
+
+/// A fabric, as far as its tests told.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CardFile {
     /// What the fabric is called.
     pub title: String,
     /// Mass by area \[kg/m²\], if known.
@@ -39,6 +52,46 @@ pub struct ShellCardFile {
     pub membrane_within: [f64; MembraneStiffness::COUNT],
     /// Bending stiffnesses \[N·m\], if loops were measured.
     pub bending: Option<BendingStiffness>,
+    /// Its yarn, if it was fitted.
+    pub yarn: Option<YarnCard>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(non_snake_case)]
+struct YarnText {
+    k_s1: Quantity<Force, Positive>,
+    k_s2: Quantity<Force, Positive>,
+    onset: Quantity<Ratio, NotNegative>,
+    k_b: Quantity<BendingOfYarn, NotNegative>,
+    R_1: Quantity<Length, Positive>,
+    k_c1: Quantity<ForcePerLength, NotNegative>,
+    k_h: Quantity<Pressure, NotNegative>,
+    R_2: Quantity<Length, Positive>,
+    k_c2: Quantity<ForcePerLength, NotNegative>,
+    contact: ContactReading,
+    within: [f64; RodParameter::COUNT],
+    tile: String,
+}
+
+impl YarnText {
+    fn card(self) -> YarnCard {
+        let outer = ContactPhase { radius: self.R_1.si(), stiffness: self.k_c1.si() };
+        let inner = ContactPhase { radius: self.R_2.si(), stiffness: self.k_c2.si() };
+        YarnCard {
+            material: RodMaterial {
+                soft_stretch: self.k_s1.si(),
+                stiff_stretch: self.k_s2.si(),
+                onset: self.onset.si(),
+                bending: self.k_b.si(),
+                contact: [outer, inner],
+                reading: self.contact,
+                holding: self.k_h.si(),
+            },
+            within: self.within,
+            tile: self.tile,
+        }
+    }
 }
 
 #[derive(Deserialize)]
@@ -48,6 +101,7 @@ struct Text {
     title: String,
     areal_mass: Option<Quantity<ArealMass, Positive>>,
     shell: ShellText,
+    yarn: Option<YarnText>,
 }
 
 #[derive(Deserialize)]
@@ -63,7 +117,7 @@ struct ShellText {
     bending: Option<[Quantity<SheetBending, Positive>; BendingStiffness::COUNT]>,
 }
 
-impl ShellCardFile {
+impl CardFile {
     /// The card as text. Reading it gives the same card.
     #[must_use]
     pub fn to_toml(&self) -> String {
@@ -84,6 +138,9 @@ impl ShellCardFile {
             text.push_str("# Along the weft, the bias and the warp.\n");
             let values: Vec<String> = bending.to_array().iter().map(|value| format!("\"{value:?} N m\"")).collect();
             let _ = writeln!(text, "bending = [{}]", values.join(", "));
+        }
+        if let Some(yarn) = &self.yarn {
+            yarn.write(&mut text);
         }
         text
     }
@@ -110,7 +167,33 @@ impl ShellCardFile {
             membrane: MembraneStiffness::from_array(values),
             membrane_within: shell.within,
             bending: shell.bending.map(|three| BendingStiffness::from_array(three.map(Quantity::si))),
+            yarn: text.yarn.map(YarnText::card),
         })
+    }
+}
+
+impl YarnCard {
+    fn write(&self, text: &mut String) {
+        text.push_str(
+            "\n# Its yarn in full contact [Sperl2022, Eqs. 5 to 7]; k_h is what holds it in the fabric.\n[yarn]\n",
+        );
+        let units = ["N", "N", "", "N m^2", "m", "N/m", "Pa"];
+        for ((name, value), unit) in RodParameter::NAMES.into_iter().zip(self.material.parameters()).zip(units) {
+            let _ = match unit {
+                "" => writeln!(text, "{name} = {value:?}"),
+                unit => writeln!(text, "{name} = \"{value:?} {unit}\""),
+            };
+        }
+        let [_, inner] = self.material.contact;
+        let _ = writeln!(text, "R_2 = \"{:?} m\"\nk_c2 = \"{:?} N/m\"", inner.radius, inner.stiffness);
+        let reading = match self.material.reading {
+            ContactReading::SquareOfBarrier => "square_of_barrier",
+            ContactReading::Barrier => "barrier",
+            ContactReading::BarrierOfSquare => "barrier_of_square",
+        };
+        let _ = writeln!(text, "contact = \"{reading}\"");
+        let within: Vec<String> = self.within.iter().map(|&factor| number(factor)).collect();
+        let _ = writeln!(text, "within = [{}]\ntile = {}", within.join(", "), toml_string(&self.tile));
     }
 }
 
@@ -142,31 +225,42 @@ mod tests {
 
     #[test]
     fn a_card_survives_being_written() {
-        let card = ShellCardFile {
+        let card = CardFile {
             title: "\"Jersey\" \\ 2\u{1}".to_owned(),
             areal_mass: Some(0.17),
             membrane: MembraneStiffness { xx: 12.0 / 7.0, xy: 0.3, yy: 1e2, ss: 5e-3, n1: 0.0, n2: 2.5 },
             membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9],
             bending: Some(BendingStiffness { weft: 1e-6, bias: 2e-6, warp: 1.0 / 3e5 }),
+            yarn: None,
         };
-        for card in [ShellCardFile { areal_mass: None, bending: None, ..card.clone() }, card] {
-            let read = ShellCardFile::of(&TextFile::new(&card.to_toml(), "card.toml")).unwrap();
+        let material = RodMaterial {
+            onset: 0.07,
+            holding: 1e5 / 3.0,
+            reading: ContactReading::Barrier,
+            ..RodMaterial::solid_rod(0.3e-3, 1e7, 20.0)
+        };
+        let within = [1.0, 2.0, f64::INFINITY, 1.5, 1.1, 7.0, 2.0];
+        let yarn = Some(YarnCard { material, within, tile: "tile.pyp".to_owned() });
+        let whole = CardFile { yarn, ..card.clone() };
+        for card in [CardFile { areal_mass: None, bending: None, ..card.clone() }, card, whole] {
+            let read = CardFile::of(&TextFile::new(&card.to_toml(), "card.toml")).unwrap();
             assert_eq!(read, card);
         }
     }
 
     #[test]
     fn what_is_no_card_is_refused_with_its_place() {
-        let card = ShellCardFile {
+        let card = CardFile {
             title: String::new(),
             areal_mass: None,
             membrane: MembraneStiffness { xx: 1.0, xy: 0.0, yy: 1.0, ss: 1.0, n1: 0.0, n2: 0.0 },
             membrane_within: [1.0; 6],
             bending: None,
+            yarn: None,
         };
         let refused = |from: &str, to: &str| {
             let text = card.to_toml().replacen(from, to, 1);
-            ShellCardFile::of(&TextFile::new(&text, "card.toml")).unwrap_err().to_string()
+            CardFile::of(&TextFile::new(&text, "card.toml")).unwrap_err().to_string()
         };
         assert!(refused("schema = 1", "schema = 2").contains("card.toml:1:10: schema 2 is not known"));
         assert!(refused("k_xx = \"1.0 N/m\"", "k_xx = \"-1.0 N/m\"").contains("must be positive"));

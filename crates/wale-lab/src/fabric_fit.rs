@@ -3,7 +3,7 @@
 use thiserror::Error;
 use wale::energy::BendingStiffness;
 
-use crate::card_file::ShellCardFile;
+use crate::card_file::CardFile;
 use crate::fabric_file::FabricFile;
 use crate::shell::bending_fit::{BendingFit, PearCurve, fit_bending};
 use crate::shell::membrane_fit::{MeasuredStretch, MembraneFit, MembraneFitSettings, StretchTest, fit_membrane};
@@ -21,7 +21,7 @@ pub struct FabricFit {
     /// Bending stiffnesses, if loops were measured and the mass is known.
     pub bending: Option<BendingFit>,
     /// The card of both.
-    pub card: ShellCardFile,
+    pub card: CardFile,
     /// What stays open, in words.
     pub open: Vec<String>,
 }
@@ -115,12 +115,13 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
             Some(fit)
         }
     };
-    let card = ShellCardFile {
+    let card = CardFile {
         title: fabric.title.clone(),
         areal_mass: fabric.areal_mass,
         membrane: membrane.stiffness,
         membrane_within: membrane.least_squares.uncertainty,
         bending: bending.as_ref().map(|fit| fit.stiffness),
+        yarn: None,
     };
     Ok(FabricFit { membrane, bending, card, open })
 }

@@ -47,6 +47,8 @@ pub struct FabricFile {
     pub yarns: Vec<Yarn>,
     /// How its yarns lie, if known.
     pub structure: Option<Structure>,
+    /// Distance of neighbouring wales, and of neighbouring courses \[m\], where they were measured.
+    pub spacing: [Option<f64>; 2],
     /// Stretch tests, by direction.
     pub stretch: Vec<StretchTest>,
     /// Pear-loop tests, by direction.

@@ -34,6 +34,7 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
             .error("yarn.0.share", what, "shares are parts of the fabric's mass; all of them are 100 %")
             .into());
     }
+    let spacing = text.structure.as_ref().map_or([None; 2], |s| [s.wale_spacing, s.course_spacing]);
     let structure = text.structure.as_ref().map(|text| structure(text, file, &mut inputs)).transpose()?;
     let mut stretch = Vec::new();
     for (index, test) in text.stretch.iter().enumerate() {
@@ -54,6 +55,7 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         areal_mass: text.areal_mass.map(Quantity::si),
         yarns,
         structure,
+        spacing: spacing.map(|spacing| spacing.map(Quantity::si)),
         stretch,
         bending,
         inputs,
@@ -72,6 +74,10 @@ fn yarn(text: &super::schema::YarnText) -> Yarn {
 }
 
 fn structure(text: &StructureText, file: &TextFile, inputs: &mut Vec<PathBuf>) -> Result<Structure, FabricFileError> {
+    if text.tile.is_some() && (text.wale_spacing.is_some() || text.course_spacing.is_some()) {
+        let what = "a tile says itself how far its wales and courses are apart".to_owned();
+        return Err(file.error("structure.tile", what, "leave wale_spacing and course_spacing out").into());
+    }
     match (&text.tile, &text.scene) {
         (Some(tile), None) => {
             let path = beside(file, "structure.tile", tile)?;

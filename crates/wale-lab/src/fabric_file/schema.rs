@@ -69,6 +69,10 @@ pub struct StructureText {
     pub tile: Option<String>,
     /// A scene of wale.
     pub scene: Option<String>,
+    /// Distance of neighbouring wales of the real fabric, if it is not that of the relaxed scene.
+    pub wale_spacing: Option<Quantity<Length, Positive>>,
+    /// Likewise of neighbouring courses.
+    pub course_spacing: Option<Quantity<Length, Positive>>,
 }
 
 /// A test of one specimen.

@@ -33,6 +33,14 @@ impl Default for GradientSettings {
     }
 }
 
+impl GradientSettings {
+    /// A first look, in a tenth of the time.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { screened: 8, starts: 1, rounds: 3, evaluations: 4, samples: 5, ..Self::default() }
+    }
+}
+
 /// Numbers that were found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {

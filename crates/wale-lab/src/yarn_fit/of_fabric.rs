@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use thiserror::Error;
-use wale::energy::{BendingStiffness, ContactPhase};
+use wale::energy::{BendingStiffness, ContactPhase, ContactReading};
 use wale::scene::ErrorClass;
 
 use super::objective::BendingTarget;
@@ -120,7 +120,11 @@ pub fn structure_tile(fabric: &FabricFile) -> Result<YarnTile, YarnProblemError>
         }
         Structure::Scene(scene) => {
             if let (Some(chart), Some(card)) = (scene.structure.chart(), scene.fabric.knit()) {
-                return Ok(tile_of_chart(chart, &scene.yarns, card)?);
+                let tile = tile_of_chart(chart, &scene.yarns, card)?;
+                let repeat = chart.smallest_repeat();
+                let counts = [repeat.column_count(), repeat.row_count()].map(|count| count as f64);
+                let asked = |axis: usize| fabric.spacing[axis].map_or(tile.periods()[axis], |s| s * counts[axis]);
+                return Ok(tile.with_periods([asked(0), asked(1)]));
             }
             let (Some(woven), Some(card)) = (scene.structure.woven(), scene.fabric.woven()) else {
                 return Err(YarnProblemError::NoRepeat);
@@ -183,8 +187,8 @@ pub fn problem(
         radius: RodMaterial::INNER_RADIUS * radius,
         stiffness: (1e-2 * stiff / radius).max(RodMaterial::INNER_STIFFNESS),
     };
-    let base = RodMaterial { ..RodMaterial::solid_rod(radius, 1.0, 1.0) };
-    let base = RodMaterial { contact: [base.contact[0], inner], ..base };
+    let rod = RodMaterial::solid_rod(radius, 1.0, 1.0);
+    let base = RodMaterial { contact: [rod.contact[0], inner], reading: ContactReading::Barrier, ..rod };
     YarnProblem {
         tile,
         base,

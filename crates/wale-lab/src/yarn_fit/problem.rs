@@ -135,17 +135,17 @@ impl YarnProblem {
 }
 
 /// A problem that is answered here and now; rest shapes are kept for the next question with the same.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Here<'a> {
     problem: &'a YarnProblem,
-    rested: Mutex<HashMap<[u64; P], Option<Arc<YarnTile>>>>,
+    rested: Arc<Mutex<HashMap<[u64; P], Option<Arc<YarnTile>>>>>,
 }
 
 impl<'a> Here<'a> {
     /// Answers questions about a problem.
     #[must_use]
     pub fn new(problem: &'a YarnProblem) -> Self {
-        Self { problem, rested: Mutex::new(HashMap::new()) }
+        Self { problem, rested: Arc::default() }
     }
 
     /// The tile with the rest shapes of some numbers.

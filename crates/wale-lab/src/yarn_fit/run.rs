@@ -1,7 +1,5 @@
 //! A yarn fitted from the beginning to the end, by whichever way.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use super::gradients::{Found, GradientSettings, fit_by_gradients, improve};
 use super::journal::Stopped;
 use super::objective::{YarnFitError, errors};
@@ -114,12 +112,11 @@ fn judge<A: Answers>(
 }
 
 /// Answers until somebody wants to stop.
-#[derive(Debug)]
 pub struct Interruptible<'a, A> {
     /// Who answers.
     pub by: A,
-    /// Raised when enough was answered.
-    pub stop: &'a AtomicBool,
+    /// Whether enough was answered.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl<A: Answers> Answers for Interruptible<'_, A>
@@ -129,7 +126,7 @@ where
     type Unanswered = Stopped;
 
     fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Stopped> {
-        if self.stop.load(Ordering::Relaxed) {
+        if (self.stop)() {
             return Err(Stopped::Interrupted);
         }
         self.by.answer(question).map_err(Into::into)

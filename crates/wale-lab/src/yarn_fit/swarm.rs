@@ -47,6 +47,14 @@ impl Default for SwarmSettings {
     }
 }
 
+impl SwarmSettings {
+    /// A first look, in a tenth of the time.
+    #[must_use]
+    pub fn quick() -> Self {
+        Self { particles: 12, steps: 4, samples: 5, local: [12, 5], ..Self::default() }
+    }
+}
+
 /// Cost of a place at which the tile cannot be tested: worse than any other, and finite, since COBYLA stalls at what is not.
 pub(super) const FAILED: f64 = 1e6;
 /// First step of COBYLA, and that at which it ends, over the bounds.

@@ -243,6 +243,18 @@ impl YarnTile {
         Self { rest_lengths: self.lengths(), rest_curvatures: self.curvatures(), ..self.clone() }
     }
 
+    /// The same tile with other periods \[m\]: its yarns go along evenly, and are at rest as they then lie.
+    ///
+    /// # Panics
+    /// If a period is not positive.
+    #[must_use]
+    pub fn with_periods(&self, periods: [f64; 2]) -> Self {
+        assert!(periods.iter().all(|&period| period > 0.0));
+        let factor = [0, 1].map(|axis| periods[axis] / self.periods[axis]);
+        let vertices = self.vertices.iter().map(|x| [factor[0] * x[0], factor[1] * x[1], x[2]]).collect();
+        Self { periods, vertices, ..self.clone() }.at_rest_as_it_lies()
+    }
+
     /// Several tiles beside each other as one.
     ///
     /// # Panics

@@ -6,7 +6,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale::scene::TextFile;
-use wale_lab::card_file::ShellCardFile;
+use wale_lab::card_file::CardFile;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
 use wale_lab::shell::ShellCard;
 
@@ -62,7 +62,7 @@ pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
         let fitted = fitted(path)?;
         (TextFile::read(&fitted, "card").map_err(scene_failure)?, fitted)
     };
-    let card = ShellCardFile::of(&file).map_err(scene_failure)?;
+    let card = CardFile::of(&file).map_err(scene_failure)?;
     let lacks = |what: &str, option: &str| {
         let mend = "add [[bending]] loops and areal_mass to the fabric file and fit it again";
         Failure::new(

@@ -1,0 +1,84 @@
+//! Arguments of `wale fit`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+/// `wale fit`
+#[derive(Debug, Args)]
+pub struct Fit {
+    /// Fabric file
+    pub fabric: PathBuf,
+    /// Folder for the card, the curves and the report; left out, beside the fabric file and named after it
+    #[arg(long, value_name = "FOLDER")]
+    pub out: Option<PathBuf>,
+    /// Overwrite what is in that folder, answers of a fit that was stopped included
+    #[arg(long)]
+    pub force: bool,
+    /// Only read the fabric file and its tables, and say how they were understood
+    #[arg(long)]
+    pub read_only: bool,
+    /// Fit the thin shell alone, though the fabric file says how the yarns lie
+    #[arg(long)]
+    pub shell_only: bool,
+    /// How the yarn is fitted
+    #[arg(long, value_enum, default_value_t = Way::Gradients)]
+    pub way: Way,
+    /// Only take a first look at the yarn, in a tenth of the time
+    #[arg(long)]
+    pub quick: bool,
+    /// Seed of the swarm
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Leave a part of the yarn's model out, to see what it is for
+    #[arg(long, value_enum, value_name = "PART")]
+    pub without: Vec<Part>,
+    /// Fit the yarn to the bending stiffnesses of the shell, too
+    #[arg(long)]
+    pub with_bending: bool,
+    #[command(flatten)]
+    pub elsewhere: Elsewhere,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Threads; all cores if left out
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+}
+
+/// A fit whose questions are answered elsewhere.
+#[derive(Debug, Args)]
+#[group(multiple = false)]
+pub struct Elsewhere {
+    /// Print the questions that the fit of the yarn asks now, as JSON lines, and end; none when it is done
+    #[arg(long)]
+    pub ask: bool,
+    /// Answer questions, JSON lines of standard input, and print the answers
+    #[arg(long)]
+    pub answer: bool,
+    /// Take answers, JSON lines of a file or of standard input (`-`)
+    #[arg(long, value_name = "FILE")]
+    pub tell: Option<PathBuf>,
+}
+
+/// Ways to fit a yarn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Way {
+    /// Least squares with exact derivatives, from the best of many places
+    Gradients,
+    /// A swarm of 64 particles in 10 steps, then COBYLA: the paper's way
+    Swarm,
+    /// COBYLA from the middle of the bounds
+    Local,
+}
+
+/// Parts of the yarn's model that can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Yarns of one stiffness instead of two
+    Phases,
+    /// Yarns at rest as they were registered
+    RestShapes,
+    /// Nothing holds the yarns where they stick to each other
+    Holding,
+}

@@ -1,0 +1,124 @@
+//! `wale fit`: the thin shell and the yarn of a fabric file, by its stretch and bending tests.
+
+mod questions;
+mod report;
+mod tell;
+mod yarn;
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use wale::record::RecordError;
+use wale::record::atomic_file::write_atomically;
+use wale_lab::card_file::YarnCard;
+use wale_lab::fabric_file::{FabricFile, FabricFileError};
+use wale_lab::fabric_fit::{FabricFit, FabricFitError, fit_fabric};
+use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::yarn_fit::run::YarnFit;
+use wale_lab::yarn_tile::write_pattern;
+
+use crate::arguments::fit::Fit;
+use crate::exit::{Code, Failure};
+use crate::opened::scene_failure;
+use crate::{machine, output, say};
+
+/// Files of a finished fit; what they are is in `docs/topics/fabric-files.md`.
+const RESULTS: [&str; 5] = ["card.toml", "curves.csv", "curves.svg", "report.html", "tile.pyp"];
+
+/// Reads, fits, tells and writes.
+pub fn fit(arguments: &Fit) -> Result<(), Failure> {
+    let folder = arguments.out.clone().unwrap_or_else(|| arguments.fabric.with_extension("fit"));
+    machine::use_threads(arguments.threads.map(usize::from))?;
+    if arguments.elsewhere.answer {
+        return questions::answer(&folder);
+    }
+    if let Some(file) = &arguments.elsewhere.tell {
+        return questions::tell(&folder, file);
+    }
+    let fabric = FabricFile::read(&arguments.fabric).map_err(|error| match error {
+        FabricFileError::Fabric(error) => scene_failure(error),
+        FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
+    })?;
+    if arguments.read_only {
+        return if arguments.json { output::json(&tell::read_json(&fabric)) } else { tell::reading(&fabric) };
+    }
+    let taken = RESULTS.iter().any(|name| folder.join(name).exists());
+    if taken && !arguments.force {
+        let mend = "there is a fit in it: choose another with `--out`, or overwrite it with `--force`";
+        return Err(RecordError::NotEmpty { path: folder, mend }.into());
+    }
+    // What is wrong with the yarns is said before the shell is fitted.
+    let with_yarn = fabric.structure.is_some() && !arguments.shell_only;
+    if with_yarn {
+        yarn::check(arguments, &fabric)?;
+    }
+    let mut shell = fit_shell(&arguments.fabric, &fabric)?;
+    let yarn = if with_yarn { Some(yarn::fit(arguments, &fabric, &shell, &folder)?) } else { None };
+    let yarn = match yarn {
+        Some(yarn::End::Asked(questions)) => return questions::print(&questions),
+        Some(yarn::End::Fitted(found)) => Some(found),
+        None if arguments.elsewhere.ask => {
+            let what = "only the fit of a yarn asks questions; add [structure] to the fabric file";
+            return Err(Failure::new(Code::BadInput, format_args!("{}: {what}", arguments.fabric.display())));
+        }
+        None => None,
+    };
+    if arguments.elsewhere.ask {
+        output::note("every question is answered; run the command without --ask for the card");
+        return Ok(());
+    }
+    if let Some(found) = &yarn {
+        let tile = RESULTS[4].to_owned();
+        shell.card.yarn = Some(YarnCard { material: found.fit.material, within: found.fit.within, tile });
+    }
+    deliver(arguments, &folder, &fabric, &shell, yarn.as_ref())
+}
+
+fn fit_shell(path: &Path, fabric: &FabricFile) -> Result<FabricFit, Failure> {
+    let settings = MembraneFitSettings { targets: yarn::TARGETS, ..MembraneFitSettings::default() };
+    fit_fabric(fabric, &settings).map_err(|error| {
+        let code = match error {
+            FabricFitError::NoStretchTest => Code::BadInput,
+            FabricFitError::Shell(_) => Code::NotConverged,
+        };
+        Failure::new(code, format_args!("{}: {error}", path.display()))
+    })
+}
+
+/// A yarn that was fitted, and the tile with its rest shapes.
+struct FittedYarn {
+    fit: YarnFit,
+    tile: wale_lab::yarn_tile::YarnTile,
+}
+
+fn deliver(
+    arguments: &Fit,
+    folder: &PathBuf,
+    fabric: &FabricFile,
+    shell: &FabricFit,
+    yarn: Option<&FittedYarn>,
+) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
+    let fit = yarn.map(|yarn| &yarn.fit);
+    let svg = report::plot(fabric, shell, fit).to_svg().map_err(|error| Failure::new(Code::BadInput, error))?;
+    write(&folder.join("curves.csv"), report::curves_csv(fabric, shell, fit).as_bytes())?;
+    write(&folder.join("curves.svg"), svg.as_bytes())?;
+    write(&folder.join("report.html"), report::page(fabric, shell, fit, &svg).as_bytes())?;
+    if let Some(yarn) = yarn {
+        write(&folder.join("tile.pyp"), write_pattern(&yarn.tile).as_bytes())?;
+    }
+    // Last: a folder with a card has all the rest.
+    write(&folder.join("card.toml"), shell.card.to_toml().as_bytes())?;
+    if arguments.json {
+        return output::json(&tell::found_json(folder, shell, fit));
+    }
+    tell::reading(fabric)?;
+    for line in tell::lines(shell, fit) {
+        say!("{line}")?;
+    }
+    say!("  {}", folder.join("report.html").display())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    Ok(write_atomically(path, |out| io::Write::write_all(out, bytes))?)
+}

@@ -1,0 +1,144 @@
+//! What a fit says.
+
+use std::path::Path;
+
+use serde_json::json;
+use wale::energy::{BendingStiffness, MembraneStiffness};
+use wale_lab::fabric_file::FabricFile;
+use wale_lab::fabric_fit::FabricFit;
+use wale_lab::yarn_fit::run::YarnFit;
+use wale_lab::yarn_tile::RodParameter;
+
+use crate::exit::Failure;
+use crate::say;
+
+/// A direction by its name, if it has one.
+pub fn degrees(radians: f64) -> String {
+    match radians.to_degrees().round() as i64 {
+        0 => "weft".to_owned(),
+        45 => "bias".to_owned(),
+        90 => "warp".to_owned(),
+        other => format!("{other}°"),
+    }
+}
+
+/// How the tables were understood.
+pub fn reading(fabric: &FabricFile) -> Result<(), Failure> {
+    say!("{}", if fabric.title.is_empty() { "a fabric" } else { &fabric.title })?;
+    for test in &fabric.stretch {
+        let (stretch, force) = (test.curve.stretch.last().copied(), test.curve.force.last().copied());
+        let (stretch, force) = (stretch.unwrap_or_default(), force.unwrap_or_default());
+        say!(
+            "  stretch along the {}: {} samples to {:.1} %, {force:.3} N",
+            degrees(test.direction),
+            test.curve.stretch.len(),
+            100.0 * stretch
+        )?;
+        for line in &test.curve.read_as {
+            say!("    {line}")?;
+        }
+    }
+    for test in &fabric.bending {
+        say!("  loops along the {}: {}", degrees(test.direction), test.curve.distance.len())?;
+        for line in &test.curve.read_as {
+            say!("    {line}")?;
+        }
+    }
+    for gap in fabric.gaps() {
+        say!("  {gap}")?;
+    }
+    Ok(())
+}
+
+/// The same as JSON.
+pub fn read_json(fabric: &FabricFile) -> serde_json::Value {
+    json!({
+        "title": fabric.title,
+        "stretch": fabric.stretch.iter().map(|test| json!({
+            "direction_rad": test.direction,
+            "stretch": test.curve.stretch,
+            "force_N": test.curve.force,
+            "compression": test.curve.compression,
+            "read_as": test.curve.read_as,
+        })).collect::<Vec<_>>(),
+        "bending": fabric.bending.iter().map(|test| json!({
+            "direction_rad": test.direction,
+            "clamp_distance_m": test.curve.distance,
+            "aspect_ratio": test.curve.aspect_ratio,
+            "read_as": test.curve.read_as,
+        })).collect::<Vec<_>>(),
+        "gaps": fabric.gaps(),
+    })
+}
+
+/// What was found, as JSON.
+pub fn found_json(folder: &Path, found: &FabricFit, yarn: Option<&YarnFit>) -> serde_json::Value {
+    // Infinite factors are no numbers in JSON.
+    let factors = |within: &[f64]| within.iter().map(|w| w.is_finite().then_some(*w)).collect::<Vec<Option<f64>>>();
+    json!({
+        "folder": folder,
+        "membrane_N_per_m": found.membrane.stiffness.to_array(),
+        "membrane_within": factors(&found.card.membrane_within),
+        "force_error": found.membrane.force_error,
+        "compression_error": found.membrane.compression_error,
+        "bending_N_m": found.bending.as_ref().map(|fit| fit.stiffness.to_array()),
+        "aspect_error": found.bending.as_ref().map(|fit| fit.aspect_error),
+        "yarn": yarn.map(|yarn| json!({
+            "names": RodParameter::NAMES,
+            "parameters_SI": yarn.material.parameters(),
+            "within": factors(&yarn.within),
+            "error": yarn.error,
+            "cost": yarn.cost,
+            "evaluations": yarn.evaluations,
+            "open": yarn.open,
+        })),
+        "open": found.open,
+    })
+}
+
+/// What was found, in lines.
+pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>) -> Vec<String> {
+    let mut lines = vec![format!(
+        "thin shell: mean error {:.1} % of force, {:.1} % of compression",
+        100.0 * found.membrane.force_error,
+        100.0 * found.membrane.compression_error
+    )];
+    let values = found.membrane.stiffness.to_array();
+    for ((name, value), within) in MembraneStiffness::NAMES.into_iter().zip(values).zip(found.card.membrane_within) {
+        let known = if within <= 3.0 { format!("× or ÷ {within:.2}") } else { "not determined".to_owned() };
+        lines.push(format!("  {name} {value:10.3} N/m   {known}"));
+    }
+    if let Some(bending) = &found.bending {
+        lines.push(format!("bending: mean error {:.1} % of the loops' aspect", 100.0 * bending.aspect_error));
+        for (name, value) in BendingStiffness::NAMES.into_iter().zip(bending.stiffness.to_array()) {
+            lines.push(format!("  {name} {:10.3} µN·m", 1e6 * value));
+        }
+    }
+    if let Some(yarn) = yarn {
+        let percent = |part: f64| 100.0 * part;
+        lines.push(format!(
+            "yarn: mean error {:.1} % of the stress in comfort, {:.1} % over the whole range, {:.1} % of compression",
+            percent(yarn.error.comfort),
+            percent(yarn.error.full),
+            percent(yarn.error.compression)
+        ));
+        let values = yarn.material.parameters();
+        for (k, (name, within)) in RodParameter::NAMES.into_iter().zip(yarn.within).enumerate() {
+            let (factor, unit) = UNITS[k];
+            let known = match within {
+                1.0 => "held".to_owned(),
+                within if within > 3.0 => "not determined".to_owned(),
+                within if k == RodParameter::Onset as usize => format!("± {:.1} %", 5.0 * within.ln()),
+                within => format!("× or ÷ {within:.2}"),
+            };
+            lines.push(format!("  {name:<5} {:12.5} {unit:<7} {known}", factor * values[k]));
+        }
+        lines.extend(yarn.open.iter().map(|open| format!("  {open}")));
+    }
+    lines.extend(found.open.iter().map(|open| format!("  {open}")));
+    lines
+}
+
+/// How the numbers of a yarn are shown.
+const UNITS: [(f64, &str); RodParameter::COUNT] =
+    [(1.0, "N"), (1.0, "N"), (100.0, "%"), (1e9, "mN mm^2"), (1e3, "mm"), (1e-3, "kJ/m^2"), (1e-3, "kPa")];
