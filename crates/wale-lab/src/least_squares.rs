@@ -11,7 +11,7 @@ use wale_numerics::eigen::symmetric_eigen;
 pub struct Residuals<const P: usize> {
     /// Residuals, scaled so that one is as bad as any other \[–\].
     pub values: Vec<f64>,
-    /// Their derivatives, a row each.
+    /// Their derivatives, a row each; none where they were not asked for.
     pub slopes: Vec<[f64; P]>,
 }
 
@@ -98,7 +98,7 @@ pub fn fit_positive<const P: usize>(
 ) -> Option<LeastSquaresFit<P>> {
     let logs = LeastSquaresSettings { bounds: settings.bounds.map(|pair| pair.map(f64::ln)), ..*settings };
     let starts: Vec<[f64; P]> = starts.iter().map(|start| start.map(f64::ln)).collect();
-    let found = fit(|at: &[f64; P]| Ok::<_, Infallible>(evaluate(&at.map(f64::exp))), &starts, &logs);
+    let found = fit(|at: &[f64; P], _| Ok::<_, Infallible>(evaluate(&at.map(f64::exp))), &starts, &logs);
     let found = match found {
         Ok(found) => found?,
         Err(never) => match never {},
@@ -108,13 +108,14 @@ pub fn fit_positive<const P: usize>(
 
 /// The coordinates of least squares by Levenberg–Marquardt from each start; the best of all, the earlier where two are equal.
 ///
-/// `evaluate` gets coordinates, and answers `None` where a test of them fails: that start then goes another way, or is left out.
+/// `evaluate` gets coordinates and whether derivatives are wanted, which it may give unasked; it answers `None` where a test of them
+/// fails: that start then goes another way, or is left out.
 /// Starts run in parallel; the result does not depend on the number of threads. `None` if none led anywhere.
 ///
 /// # Errors
 /// The first that `evaluate` ends with, in the order of the starts; all starts are followed as far as they go.
 pub fn fit<const P: usize, E: Send>(
-    evaluate: impl Fn(&[f64; P]) -> Result<Option<Residuals<P>>, E> + Sync,
+    evaluate: impl Fn(&[f64; P], bool) -> Result<Option<Residuals<P>>, E> + Sync,
     starts: &[[f64; P]],
     settings: &LeastSquaresSettings<P>,
 ) -> Result<Option<LeastSquaresFit<P>>, E> {
@@ -163,21 +164,21 @@ struct Descent<const P: usize> {
 }
 
 fn descend<const P: usize, E>(
-    evaluate: &impl Fn(&[f64; P]) -> Result<Option<Residuals<P>>, E>,
+    evaluate: &impl Fn(&[f64; P], bool) -> Result<Option<Residuals<P>>, E>,
     start: &[f64; P],
     settings: &LeastSquaresSettings<P>,
 ) -> Result<Option<Descent<P>>, E> {
     let within = |k: usize, value: f64| value.clamp(settings.bounds[k][0], settings.bounds[k][1]);
     let mut place: [f64; P] = std::array::from_fn(|k| within(k, start[k]));
     let finite = |r: &Residuals<P>| r.cost().is_finite() && r.slopes.iter().flatten().all(|s| s.is_finite());
-    let at = |place: &[f64; P]| -> Result<Option<Residuals<P>>, E> {
-        let mut found = evaluate(place)?.filter(finite);
+    let at = |place: &[f64; P], slopes: bool| -> Result<Option<Residuals<P>>, E> {
+        let mut found = evaluate(place, slopes)?.filter(finite);
         for row in found.iter_mut().flat_map(|found| &mut found.slopes) {
             (0..P).filter(|&k| !settings.is_free(k)).for_each(|k| row[k] = 0.0);
         }
         Ok(found)
     };
-    let Some(mut here) = at(&place)? else { return Ok(None) };
+    let Some(mut here) = at(&place, true)? else { return Ok(None) };
     let start_cost = here.cost();
     let mut cost = start_cost;
     let mut damping = FIRST_DAMPING;
@@ -208,7 +209,12 @@ fn descend<const P: usize, E>(
         let part = (LONGEST_STEP / longest.max(f64::MIN_POSITIVE)).min(1.0);
         let trial: [f64; P] = std::array::from_fn(|i| within(i, place[i] + part * system.right_side[i]));
         evaluations += 1;
-        match at(&trial)?.map(|found| (found.cost(), found)) {
+        let found = match at(&trial, false)? {
+            // Derivatives are asked for where the step is taken.
+            Some(found) if found.cost() < cost && found.slopes.len() < found.values.len() => at(&trial, true)?,
+            found => found,
+        };
+        match found.map(|found| (found.cost(), found)) {
             Some((lower, found)) if lower < cost => {
                 let gain = (cost - lower) / cost;
                 (place, here, cost) = (trial, found, lower);
@@ -292,7 +298,7 @@ mod tests {
     #[test]
     fn an_evaluation_that_ends_ends_the_fit_and_every_start_goes_as_far_as_it_can() {
         let asked = std::sync::Mutex::new(Vec::new());
-        let evaluate = |at: &[f64; 1]| {
+        let evaluate = |at: &[f64; 1], _| {
             if at[0].fract() == 0.0 {
                 let mut out = Residuals::default();
                 out.push(at[0] - 7.5, [1.0]);

@@ -6,7 +6,8 @@ use super::problem::{Answers, P, Question, YarnProblem};
 use super::progress::Progress;
 use super::sequence::halton;
 use super::space::RodSpace;
-use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, fit};
+use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
+use crate::yarn_tile::RodParameter;
 
 /// How a fit by gradients is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,10 +18,10 @@ pub struct GradientSettings {
     pub screening_samples: usize,
     /// How many of the best are improved.
     pub starts: usize,
-    /// Turns of rest shapes and of least squares.
-    pub rounds: usize,
-    /// Evaluations of least squares in each.
+    /// Steps of least squares from each, those that were not taken too.
     pub evaluations: usize,
+    /// Steps more from where the best of them has come to.
+    pub polish: usize,
     /// Points along each curve then.
     pub samples: usize,
     /// Noise of the data that intervals reckon with even where the fit is closer \[–\].
@@ -29,7 +30,15 @@ pub struct GradientSettings {
 
 impl Default for GradientSettings {
     fn default() -> Self {
-        Self { screened: 32, screening_samples: 3, starts: 3, rounds: 8, evaluations: 6, samples: 8, least_noise: 0.01 }
+        Self {
+            screened: 32,
+            screening_samples: 3,
+            starts: 3,
+            evaluations: 14,
+            polish: 24,
+            samples: 8,
+            least_noise: 0.01,
+        }
     }
 }
 
@@ -37,7 +46,7 @@ impl GradientSettings {
     /// A first look, in a tenth of the time.
     #[must_use]
     pub fn quick() -> Self {
-        Self { screened: 8, starts: 1, rounds: 3, evaluations: 4, samples: 5, ..Self::default() }
+        Self { screened: 8, starts: 1, evaluations: 5, polish: 3, samples: 5, ..Self::default() }
     }
 }
 
@@ -52,13 +61,14 @@ pub struct Found {
     pub least_squares: Option<LeastSquaresFit<P>>,
 }
 
-/// Gain of a round, over the cost, below which another is not worth it.
-const LEAST_GAIN: f64 = 1e-3;
+/// Change of a coordinate by which the rest shapes' part of a derivative is found.
+const DIFFERENCE: f64 = 1e-2;
 
 /// Fits by gradients. `None` if the tile could not be tested anywhere.
 ///
 /// Differs from the paper: there a swarm looks for the valley and COBYLA, which knows no derivatives, goes down it. Rest shapes are
-/// held within a round of least squares, and found anew before the next [after Sperl2022, section 7.2].
+/// found anew for every place, as there; with them held, derivatives are exact, and what a number does by way of the rest shapes is
+/// found by differences. Test: `tests/yarn_fits.rs`.
 ///
 /// # Errors
 /// If a question is not answered now.
@@ -86,10 +96,14 @@ pub fn fit_by_gradients<A: Answers>(
         .map(|&(_, k)| improve(problem, answers, places[k], settings, progress))
         .collect();
     let improved: Vec<Option<Found>> = improved.into_iter().collect::<Result<_, _>>()?;
-    Ok(improved.into_iter().flatten().reduce(|best, next| if next.cost < best.cost { next } else { best }))
+    let best = improved.into_iter().flatten().reduce(|best, next| if next.cost < best.cost { next } else { best });
+    let Some(best) = best else { return Ok(None) };
+    let polish = GradientSettings { evaluations: settings.polish, ..*settings };
+    let polished = improve(problem, answers, best.coordinates, &polish, progress)?;
+    Ok(polished.filter(|polished| polished.cost <= best.cost).or(Some(best)))
 }
 
-/// Turns of rest shapes and least squares from one place; the best of all that were tested with rest shapes of their own.
+/// Least squares from one place.
 ///
 /// # Errors
 /// As [`fit_by_gradients`].
@@ -100,41 +114,54 @@ pub fn improve<A: Answers>(
     settings: &GradientSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
-    let mut at = from;
-    let mut best: Option<Found> = None;
-    for round in 0..=settings.rounds {
-        // The last round only looks at where the one before has come to.
-        let max_evaluations = if round == settings.rounds { 1 } else { settings.evaluations };
-        let rest = RodSpace::parameters(at);
-        let evaluate = |coordinates: &[f64; P]| {
-            let parameters = RodSpace::parameters(*coordinates);
-            let question = Question { rest, at: parameters, samples: settings.samples, slopes: true };
-            let found = answers.answer(&question)?;
-            let residuals = found.map(|found| problem.residuals(&question, &found));
-            let own = *coordinates == at;
-            progress.tell(residuals.as_ref().filter(|_| own).map(|r| r.cost()), &parameters);
-            Ok(residuals)
-        };
-        let bounds = problem.space.coordinate_bounds();
-        let search = LeastSquaresSettings { max_evaluations, bounds, least_noise: settings.least_noise };
-        let found = fit(evaluate, &[at], &search)?;
-        let Some(found) = found else {
-            // Nothing can be tested there: half way back to what could.
-            let Some(best) = &best else { return Ok(None) };
-            at = std::array::from_fn(|k| 0.5 * (at[k] + best.coordinates[k]));
-            continue;
-        };
-        let before = best.as_ref().map_or(f64::INFINITY, |best| best.cost);
-        if found.start_cost < before {
-            best = Some(Found { coordinates: at, cost: found.start_cost, least_squares: Some(found.clone()) });
-            if before - found.start_cost < LEAST_GAIN * before {
-                break;
-            }
-            at = found.parameters;
-        } else if let Some(best) = &best {
-            // Rest shapes changed more than the fit foresaw.
-            at = std::array::from_fn(|k| 0.5 * (at[k] + best.coordinates[k]));
+    let evaluate = |coordinates: &[f64; P], slopes: bool| {
+        let at = RodSpace::parameters(*coordinates);
+        let question = Question::of(at, settings.samples, slopes);
+        let residuals = answers.answer(&question)?.map(|found| problem.residuals(&question, &found));
+        progress.tell(residuals.as_ref().map(Residuals::cost), &at);
+        let Some(mut residuals) = residuals else { return Ok(None) };
+        if slopes && problem.rest_shapes {
+            add_slopes_of_rest(problem, answers, coordinates, &question, &mut residuals)?;
+        }
+        Ok(Some(residuals))
+    };
+    let bounds = problem.space.coordinate_bounds();
+    let (max_evaluations, least_noise) = (settings.evaluations, settings.least_noise);
+    let search = LeastSquaresSettings { max_evaluations, bounds, least_noise };
+    let found = fit(evaluate, &[from], &search)?;
+    Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
+}
+
+/// Adds what each number does to the residuals by way of the rest shapes: they are found with a number that differs a little, and
+/// pulled with the one that does not.
+fn add_slopes_of_rest<A: Answers>(
+    problem: &YarnProblem,
+    answers: &A,
+    coordinates: &[f64; P],
+    question: &Question,
+    residuals: &mut Residuals<P>,
+) -> Result<(), A::Unanswered> {
+    let bounds = problem.space.coordinate_bounds();
+    // Yarns at rest are stretched by too little for an onset to matter.
+    let free = (0..P).filter(|&k| bounds[k][0] < bounds[k][1] && k != RodParameter::Onset as usize);
+    let moved: Vec<(usize, f64, Question)> = free
+        .map(|k| {
+            let step = if coordinates[k] + DIFFERENCE > bounds[k][1] { -DIFFERENCE } else { DIFFERENCE };
+            let mut near = *coordinates;
+            near[k] += step;
+            (k, step, Question { rest: RodSpace::parameters(near), slopes: false, ..*question })
+        })
+        .collect();
+    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> = moved
+        .par_iter()
+        .map(|(_, _, asked)| Ok(answers.answer(asked)?.map(|found| problem.residuals(asked, &found))))
+        .collect();
+    for ((k, step, _), found) in moved.iter().zip(found) {
+        // Where the tile cannot be tested with those, they are taken not to matter.
+        let Some(found) = found? else { continue };
+        for (row, (near, here)) in residuals.slopes.iter_mut().zip(found.values.iter().zip(&residuals.values)) {
+            row[*k] += (near - here) / step;
         }
     }
-    Ok(best)
+    Ok(())
 }

@@ -130,6 +130,9 @@ impl YarnProblem {
             add_residuals(&target.resampled(question.samples), answers, by_coordinates, &mut out);
         }
         add_bending_residuals(&self.bending, &evaluation.bending, by_coordinates, &mut out);
+        if !question.slopes {
+            out.slopes.clear();
+        }
         out
     }
 }

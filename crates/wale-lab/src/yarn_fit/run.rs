@@ -74,7 +74,7 @@ fn judge<A: Answers>(
     found: Found,
     progress: &Progress<'_>,
 ) -> Result<Option<YarnFit>, A::Unanswered> {
-    let looked = GradientSettings { rounds: 0, samples: SAMPLES, ..GradientSettings::default() };
+    let looked = GradientSettings { evaluations: 1, samples: SAMPLES, ..GradientSettings::default() };
     let at = found.coordinates;
     let within = match found.least_squares {
         Some(least_squares) => Some(least_squares.uncertainty),

@@ -35,6 +35,9 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
     if let Some(file) = &arguments.elsewhere.tell {
         return questions::tell(&folder, file);
     }
+    if arguments.elsewhere.ask && !arguments.force && folder.join(yarn::PROBLEM).exists() {
+        return questions::print(&yarn::ask(arguments, &folder, &yarn::problem(&folder)?)?);
+    }
     let fabric = FabricFile::read(&arguments.fabric).map_err(|error| match error {
         FabricFileError::Fabric(error) => scene_failure(error),
         FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
@@ -53,20 +56,16 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
         yarn::check(arguments, &fabric)?;
     }
     let mut shell = fit_shell(&arguments.fabric, &fabric)?;
-    let yarn = if with_yarn { Some(yarn::fit(arguments, &fabric, &shell, &folder)?) } else { None };
-    let yarn = match yarn {
-        Some(yarn::End::Asked(questions)) => return questions::print(&questions),
-        Some(yarn::End::Fitted(found)) => Some(found),
-        None if arguments.elsewhere.ask => {
+    let problem = if with_yarn { Some(yarn::problem_of(arguments, &fabric, &shell, &folder)?) } else { None };
+    let yarn = match (problem, arguments.elsewhere.ask) {
+        (Some(problem), true) => return questions::print(&yarn::ask(arguments, &folder, &problem)?),
+        (Some(problem), false) => Some(yarn::fit(arguments, &folder, &problem)?),
+        (None, true) => {
             let what = "only the fit of a yarn asks questions; add [structure] to the fabric file";
             return Err(Failure::new(Code::BadInput, format_args!("{}: {what}", arguments.fabric.display())));
         }
-        None => None,
+        (None, false) => None,
     };
-    if arguments.elsewhere.ask {
-        output::note("every question is answered; run the command without --ask for the card");
-        return Ok(());
-    }
     if let Some(found) = &yarn {
         let tile = RESULTS[4].to_owned();
         shell.card.yarn = Some(YarnCard { material: found.fit.material, within: found.fit.within, tile });

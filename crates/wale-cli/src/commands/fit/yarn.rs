@@ -25,14 +25,6 @@ pub const TARGETS: usize = 8;
 pub const PROBLEM: &str = "problem.json";
 pub const ANSWERS: &str = "answers.jsonl";
 
-/// How a fit of a yarn ends.
-pub enum End {
-    /// With a yarn.
-    Fitted(FittedYarn),
-    /// With questions, where these are asked for.
-    Asked(Vec<(String, Question)>),
-}
-
 /// That the fabric's yarns can be laid at all.
 pub fn check(arguments: &Fit, fabric: &FabricFile) -> Result<(), Failure> {
     structure_tile(fabric).map(drop).map_err(|error| refused(arguments, &error))
@@ -42,8 +34,13 @@ fn refused(arguments: &Fit, error: &impl std::fmt::Display) -> Failure {
     Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.fabric.display()))
 }
 
-/// Fits it, from the answers that the folder has.
-pub fn fit(arguments: &Fit, fabric: &FabricFile, shell: &FabricFit, folder: &Path) -> Result<End, Failure> {
+/// The problem of a fabric, written into the folder of its fit.
+pub fn problem_of(
+    arguments: &Fit,
+    fabric: &FabricFile,
+    shell: &FabricFit,
+    folder: &Path,
+) -> Result<YarnProblem, Failure> {
     let ablation = Ablation {
         one_phase: arguments.without.contains(&Part::Phases),
         no_rest_shapes: arguments.without.contains(&Part::RestShapes),
@@ -57,55 +54,67 @@ pub fn fit(arguments: &Fit, fabric: &FabricFile, shell: &FabricFit, folder: &Pat
     let problem = yarn_problem(fabric, shell, ablation).map_err(|error| refused(arguments, &error))?;
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
     let path = folder.join(ANSWERS);
-    if arguments.force && path.exists() && !arguments.elsewhere.ask {
+    if arguments.force && path.exists() {
         std::fs::remove_file(&path).map_err(|error| Failure::io(&path, "remove", error))?;
     }
-    let fingerprint = problem.fingerprint();
-    let journal = open(&path, &fingerprint)?;
+    // Answers of another problem are refused before theirs is overwritten.
+    open(&path, &problem.fingerprint())?;
     let text = serde_json::to_string(&problem).map_err(|error| Failure::new(Code::Bug, error))?;
     write(&folder.join(PROBLEM), text.as_bytes())?;
+    Ok(problem)
+}
+
+fn way(arguments: &Fit) -> Way {
     let (gradients, swarm) = match arguments.quick {
         true => (GradientSettings::quick(), SwarmSettings::quick()),
         false => (GradientSettings::default(), SwarmSettings::default()),
     };
     let seeded = SwarmSettings { seed: arguments.seed, ..swarm };
-    let way = match arguments.way {
+    match arguments.way {
         Asks::Gradients => Way::Gradients(gradients),
         Asks::Swarm => Way::Swarm(seeded),
         Asks::Local => Way::Local(seeded),
-    };
-    if arguments.elsewhere.ask {
-        let asked = Asked::default();
-        let silent = |_: &Step| {};
-        let answers = Recorded { journal: &journal, by: &asked };
-        let questions = match fit_yarn(&problem, &answers, &way, &Progress::new(&silent)) {
-            Err(Stopped::Asked) => asked.questions(),
-            Err(stopped) => return Err(ended(&stopped, None)),
-            Ok(_) => Vec::new(),
-        };
-        return Ok(End::Asked(questions.into_iter().map(|q| (fingerprint.clone(), q)).collect()));
     }
+}
+
+/// The questions that a fit asks now, with the problem that they belong to.
+pub fn ask(arguments: &Fit, folder: &Path, problem: &YarnProblem) -> Result<Vec<(String, Question)>, Failure> {
+    let fingerprint = problem.fingerprint();
+    let journal = open(&folder.join(ANSWERS), &fingerprint)?;
+    let asked = Asked::default();
+    let silent = |_: &Step| {};
+    let answers = Recorded { journal: &journal, by: &asked };
+    match fit_yarn(problem, &answers, &way(arguments), &Progress::new(&silent)) {
+        Err(Stopped::Asked) => Ok(asked.questions().into_iter().map(|q| (fingerprint.clone(), q)).collect()),
+        Err(stopped) => Err(ended(&stopped, None)),
+        Ok(_) => {
+            note("every question is answered; run the command without --ask for the card");
+            Ok(Vec::new())
+        }
+    }
+}
+
+/// Fits a yarn, from the answers that the folder has.
+pub fn fit(arguments: &Fit, folder: &Path, problem: &YarnProblem) -> Result<FittedYarn, Failure> {
+    let path = folder.join(ANSWERS);
+    let journal = open(&path, &problem.fingerprint())?;
     let signals = Signals::listen().map_err(|error| Failure::new(Code::Io, error))?;
     let stop = || signals.stop().is_some();
-    let here = Here::new(&problem);
+    let here = Here::new(problem);
     let answers = Interruptible { by: Recorded { journal: &journal, by: here.clone() }, stop: &stop };
     let (began, last) = (Instant::now(), std::sync::Mutex::new(Instant::now()));
     let tell = |step: &Step| {
         let mut last = last.lock().expect("nobody panics with it");
         if !arguments.json && last.elapsed().as_secs() >= 5 {
             *last = Instant::now();
-            note(&format!(
-                "yarn: {} evaluations in {:.0} s, least sum of squares {:.3e}",
-                step.evaluations,
-                began.elapsed().as_secs_f64(),
-                step.best
-            ));
+            let (count, seconds, best) = (step.evaluations, began.elapsed().as_secs_f64(), step.best);
+            note(&format!("yarn: {count} evaluations in {seconds:.0} s, least sum of squares {best:.3e}"));
         }
     };
     if !journal.is_empty() {
         note(&format!("going on with {} answers of {}", journal.len(), path.display()));
     }
-    let found = fit_yarn(&problem, &answers, &way, &Progress::new(&tell));
+    let found = fit_yarn(problem, &answers, &way(arguments), &Progress::new(&tell));
     let found = found.map_err(|stopped| ended(&stopped, signals.stop()))?;
     let parameters = found.as_ref().map(|found| found.material.parameters());
     let tile = parameters.and_then(|parameters| here.rested(&parameters));
@@ -113,7 +122,7 @@ pub fn fit(arguments: &Fit, fabric: &FabricFile, shell: &FabricFit, folder: &Pat
         let what = "the tile could be tested nowhere within the bounds: do its yarns pass through each other?";
         return Err(Failure::new(Code::NotConverged, format_args!("{}: {what}", arguments.fabric.display())));
     };
-    Ok(End::Fitted(FittedYarn { fit, tile: (*tile).clone() }))
+    Ok(FittedYarn { fit, tile: (*tile).clone() })
 }
 
 /// The journal of a problem in a folder.

@@ -1,0 +1,130 @@
+//! The fit of a yarn from the program: killed and gone on with, answered elsewhere, and what it says of bad answers.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn fabric() -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette/fabric.toml");
+    path.to_str().unwrap().to_owned()
+}
+
+/// `wale fit` of the fabric into a folder, quickly, with a text for its standard input.
+fn fit(out: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_wale"))
+        .args(["fit", &fabric(), "--quick", "--out", out.to_str().unwrap()])
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    child.wait_with_output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[test]
+fn a_yarn_is_fitted_the_same_in_one_go_after_a_kill_and_by_answers_from_elsewhere() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = |name: &str| -> PathBuf { folder.path().join(name) };
+    let read = |name: &str, file: &str| fs::read_to_string(out(name).join(file)).unwrap();
+    let whole = fit(&out("whole"), &["--json"], "");
+    assert!(whole.status.success(), "{}", said(&whole));
+    let found: serde_json::Value = serde_json::from_slice(&whole.stdout).unwrap();
+    let error = &found["yarn"]["error"];
+    assert!(error["comfort"].as_f64().unwrap() < 0.5, "{error}");
+    let card = read("whole", "card.toml");
+    assert!(card.contains("[yarn]") && read("whole", "tile.pyp").contains("*Q"));
+    assert!(read("whole", "report.html").contains("yarn: mean error"));
+
+    // Killed in the middle of writing an answer, on one thread from there.
+    let answers = read("whole", "answers.jsonl");
+    let half = answers.len() / 2;
+    fs::create_dir(out("killed")).unwrap();
+    fs::write(out("killed").join("answers.jsonl"), &answers.as_bytes()[..half]).unwrap();
+    let killed = fit(&out("killed"), &["--threads", "1"], "");
+    assert!(killed.status.success(), "{}", said(&killed));
+    assert!(said(&killed).contains("going on with"), "{}", said(&killed));
+    assert_eq!(read("killed", "card.toml"), card);
+    let sorted = |text: String| {
+        let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+        lines.sort();
+        lines
+    };
+    assert_eq!(sorted(read("killed", "answers.jsonl")), sorted(answers.clone()));
+
+    // Answered elsewhere: all that is asked is among what was answered, and repeated and useless answers do no harm.
+    let mut rounds = 0;
+    loop {
+        let asked = fit(&out("asked"), &["--ask"], "");
+        assert!(asked.status.success(), "{}", said(&asked));
+        let questions = String::from_utf8(asked.stdout).unwrap();
+        if questions.is_empty() {
+            break;
+        }
+        rounds += 1;
+        assert!(rounds < 60);
+        let problem = asked_problem(&questions);
+        let mut lines: Vec<String> = Vec::new();
+        for line in questions.lines() {
+            let question = &line[line.find("\"question\":").unwrap() + "\"question\":".len()..line.len() - 1];
+            let known = answers.lines().find(|answer| answer.contains(question));
+            let known = known.unwrap_or_else(|| panic!("{question} was never asked"));
+            lines.push(format!("{{\"problem\":\"{problem}\",{}", &known[1..]));
+        }
+        if rounds == 1 {
+            // One of them is really answered, by a worker that has the folder alone.
+            let worked = fit(&out("asked"), &["--answer"], questions.lines().next().unwrap());
+            let answer = String::from_utf8(worked.stdout).unwrap();
+            assert_eq!(answer.trim_end(), lines[0], "{}", String::from_utf8_lossy(&worked.stderr));
+        }
+        let mut text = lines.join("\n");
+        text.push('\n');
+        text.push_str(&lines[0]);
+        let told = fit(&out("asked"), &["--tell", "-"], &text);
+        assert!(told.status.success(), "{}", said(&told));
+    }
+    let told = fit(&out("asked"), &[], "");
+    assert!(told.status.success(), "{}", said(&told));
+    assert_eq!(read("asked", "card.toml"), card);
+
+    // What is no answer is refused, with its line, and leaves the journal as it was.
+    let before = read("asked", "answers.jsonl");
+    let good = format!("{{\"problem\":\"{}\",{}", journal_problem(&before), &before.lines().nth(1).unwrap()[1..]);
+    let short = good.replacen("\"samples\":", "\"samples\":1", 1);
+    for (bad, says) in [
+        ("{\"problem\":", "standard input:2:"),
+        (&good.replacen("\"problem\":\"", "\"problem\":\"0", 1)[..], "standard input:2: this is of another problem"),
+        (&short[..], "standard input:2: the answer has not as many points"),
+    ] {
+        let told = fit(&out("asked"), &["--tell", "-"], &format!("{good}\n{bad}\n"));
+        assert_eq!(told.status.code(), Some(3), "{}", said(&told));
+        assert!(said(&told).contains(says), "{}", said(&told));
+    }
+    assert_eq!(read("asked", "answers.jsonl"), before);
+    // Answers of another problem are not gone on with.
+    fs::remove_file(out("asked").join("card.toml")).unwrap();
+    for file in ["curves.csv", "curves.svg", "report.html", "tile.pyp"] {
+        fs::remove_file(out("asked").join(file)).unwrap();
+    }
+    let other = fit(&out("asked"), &["--without", "phases"], "");
+    assert_eq!(other.status.code(), Some(3));
+    assert!(said(&other).contains("--force"), "{}", said(&other));
+    let none = fit(&out("nowhere"), &["--answer"], "");
+    assert_eq!(none.status.code(), Some(3));
+    assert!(said(&none).contains("--ask"), "{}", said(&none));
+}
+
+fn asked_problem(questions: &str) -> String {
+    let line: serde_json::Value = serde_json::from_str(questions.lines().next().unwrap()).unwrap();
+    line["problem"].as_str().unwrap().to_owned()
+}
+
+fn journal_problem(journal: &str) -> String {
+    asked_problem(journal)
+}

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""Fits the yarn of a fabric on the workers of a Ray cluster: as `fit_on_dask.py`, which says how.
+
+    python drivers/fit_on_ray.py fabric.toml --out /tmp/fit [--address auto]
+"""
+
+import argparse
+import pathlib
+
+import ray
+
+from fit_on_dask import answer, call
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("fabric", type=pathlib.Path)
+    parser.add_argument("--out", type=pathlib.Path, required=True)
+    parser.add_argument("--wale", default="wale")
+    parser.add_argument("--address", help="of a Ray cluster; one on this machine if left out")
+    arguments = parser.parse_args()
+    ray.init(address=arguments.address)
+    task = ray.remote(max_retries=3)(answer)
+    command = [arguments.wale, "fit", str(arguments.fabric), "--out", str(arguments.out)]
+    while questions := call([*command, "--ask"]).splitlines():
+        problem = ray.put((arguments.out / "problem.json").read_text())
+        told = ray.get([task.remote(arguments.wale, problem, question) for question in questions])
+        call([*command, "--tell", "-"], "".join(told))
+    print(call(command), end="")
+
+
+if __name__ == "__main__":
+    main()
