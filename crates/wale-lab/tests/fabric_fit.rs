@@ -5,9 +5,11 @@ use std::fs;
 
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::fit_fabric;
+use wale_lab::fabric_fit::{FabricFit, fit_fabric};
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::uniform::uniform_stretch;
 use wale_lab::shell::{ClampedStretch, PearLoop, ShellCard};
+use wale_lab::yarn_fit::of_fabric::uniform_targets;
 
 #[test]
 fn specimens_of_different_size_are_fitted_as_what_they_are() {
@@ -46,12 +48,32 @@ fn specimens_of_different_size_are_fitted_as_what_they_are() {
     }
     let path = folder.path().join("fabric.toml");
     fs::write(&path, fabric).unwrap();
-    let found = fit_fabric(&FabricFile::read(&path).unwrap(), &MembraneFitSettings::default()).unwrap();
+    let fabric = FabricFile::read(&path).unwrap();
+    let found = fit_fabric(&fabric, &MembraneFitSettings::default()).unwrap();
     assert!(found.membrane.force_error < 2e-3 && found.membrane.compression_error < 5e-3, "{:?}", found.membrane);
     let [k, truth] = [found.membrane.stiffness, membrane].map(|k| [k.xx, k.yy, k.ss]);
     assert!(k.iter().zip(truth).all(|(k, truth)| (k / truth - 1.0).abs() < 0.05), "{k:?}");
-    let fitted = found.bending.unwrap().stiffness;
+    let fitted = found.bending.as_ref().unwrap().stiffness;
     assert!((fitted.weft / bending.weft - 1.0).abs() < 0.03, "{fitted:?}");
     assert!((fitted.warp / bending.warp - 1.0).abs() < 0.03, "{fitted:?}");
     assert!(found.open.iter().any(|open| open.contains("k_θ,bias")), "{:?}", found.open);
+    targets_of_a_shell_are_its_uniform_curves(&fabric, &found, &membrane);
+}
+
+/// What a yarn is fitted to: the clamps' share is taken out of what was measured.
+fn targets_of_a_shell_are_its_uniform_curves(fabric: &FabricFile, found: &FabricFit, truth: &MembraneStiffness) {
+    let targets = uniform_targets(fabric, found).unwrap();
+    assert_eq!(targets.len(), 3);
+    let mut clamped_off = 0.0f64;
+    for (target, points) in targets.iter().zip(&found.membrane.points) {
+        assert!(target.compression && target.comfort > 0.0 && target.comfort <= 0.3 + 1e-9);
+        let width = fabric.stretch.iter().find(|test| test.direction == target.angle).unwrap().specimen.width;
+        for (&[stretch, force, compression], [measured, _]) in target.points.iter().zip(points) {
+            let uniform = uniform_stretch(truth, target.angle, stretch).unwrap().point;
+            assert!((force / uniform.force - 1.0).abs() < 0.01, "{stretch}: {force} {}", uniform.force);
+            assert!((compression - uniform.compression).abs() < 0.003);
+            clamped_off = clamped_off.max((measured.force / width / uniform.force - 1.0).abs());
+        }
+    }
+    assert!(clamped_off > 0.03, "clamps make a difference here: {clamped_off}");
 }

@@ -61,6 +61,8 @@ pub struct Found {
     pub least_squares: Option<LeastSquaresFit<P>>,
 }
 
+/// Parts of the onset from which the best place is improved once more.
+const EARLIER: [f64; 3] = [1.0, 0.4, 0.1];
 /// Change of a coordinate by which the rest shapes' part of a derivative is found.
 const DIFFERENCE: f64 = 1e-2;
 
@@ -99,8 +101,20 @@ pub fn fit_by_gradients<A: Answers>(
     let best = improved.into_iter().flatten().reduce(|best, next| if next.cost < best.cost { next } else { best });
     let Some(best) = best else { return Ok(None) };
     let polish = GradientSettings { evaluations: settings.polish, ..*settings };
-    let polished = improve(problem, answers, best.coordinates, &polish, progress)?;
-    Ok(polished.filter(|polished| polished.cost <= best.cost).or(Some(best)))
+    // An onset beyond what the yarns are stretched by is felt by nothing, and least squares does not come back from there.
+    let onset = RodParameter::Onset as usize;
+    let [low, high] = problem.space.coordinate_bounds()[onset];
+    let earlier = |part: f64| {
+        let mut from = best.coordinates;
+        from[onset] = low + part * (from[onset] - low);
+        from
+    };
+    let parts: &[f64] = if low < high { &EARLIER } else { &EARLIER[..1] };
+    let polished: Vec<Result<Option<Found>, A::Unanswered>> =
+        parts.par_iter().map(|&part| improve(problem, answers, earlier(part), &polish, progress)).collect();
+    let polished: Vec<Option<Found>> = polished.into_iter().collect::<Result<_, _>>()?;
+    let all = polished.into_iter().flatten();
+    Ok(Some(all.fold(best, |best, next| if next.cost < best.cost { next } else { best })))
 }
 
 /// Least squares from one place.

@@ -1,0 +1,164 @@
+//! Yarns are found again from the curves that they made; failures cost, and never stop a fit; threads change nothing.
+
+use std::convert::Infallible;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use wale::pattern::weave::Draft;
+use wale_lab::shell::StretchCurve;
+use wale_lab::yarn_fit::gradients::GradientSettings;
+use wale_lab::yarn_fit::of_fabric::{Ablation, problem};
+use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, P, Question, YarnProblem};
+use wale_lab::yarn_fit::run::{Way, YarnFit, fit_yarn};
+use wale_lab::yarn_fit::swarm::SwarmSettings;
+use wale_lab::yarn_fit::{Progress, RodSpace, Target, pull};
+use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, contact_radius, tile_of_draft};
+
+const STIFFNESS: f64 = 100.0;
+const POINTS: usize = 4;
+
+/// A plain weave, the curves that it makes with known numbers along weft and bias, and these numbers. Bending, contact and what holds
+/// the yarns are to be found; the rest is held.
+fn known() -> (YarnProblem, [f64; P]) {
+    let radius = 0.25e-3;
+    let tile = tile_of_draft(&Draft::plain(), radius, [1.1e-3, 1.2e-3], [2.0 * radius; 2]).unwrap();
+    let mut problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
+    problem.rest = RestShapeSettings { early_rounds: 2, late_rounds: 3, ..problem.rest };
+    let touching = contact_radius(&problem.tile);
+    let bending = 0.05 * 0.25 * STIFFNESS * touching * touching;
+    let holding = 1e-2 * bending / touching.powi(4);
+    let contact = 0.02 * STIFFNESS / touching;
+    let truth = [20.0, STIFFNESS, 0.02, bending, 1.05 * touching, contact, holding];
+    for held in [RodParameter::SoftStretch, RodParameter::Onset, RodParameter::OuterRadius] {
+        problem.space = problem.space.holding(held, truth[held as usize]);
+    }
+    let rested = problem.rested(&truth).unwrap();
+    let material = problem.base.with_parameters(truth);
+    problem.targets = [(0.0, 0.05), (std::f64::consts::FRAC_PI_4, 0.12)]
+        .map(|(angle, largest)| {
+            let stretches: Vec<f64> = (1..=POINTS).map(|k| largest * k as f64 / POINTS as f64).collect();
+            let answers = pull(&rested, &material, angle, &stretches, false, &problem.pull).unwrap();
+            let points: Vec<_> = answers.iter().map(|answer| answer.point).collect();
+            let comfort = 0.4 * points[POINTS - 1].force;
+            Target::new(&StretchCurve { angle, points }, true, comfort)
+        })
+        .into();
+    (problem, truth)
+}
+
+fn fit<A: Answers<Unanswered = Infallible>>(problem: &YarnProblem, answers: &A, way: &Way) -> Option<YarnFit> {
+    let silent = |_: &wale_lab::yarn_fit::Step| {};
+    let Ok(found) = fit_yarn(problem, answers, way, &Progress::new(&silent));
+    found
+}
+
+fn gradients() -> GradientSettings {
+    GradientSettings {
+        screened: 8,
+        screening_samples: 2,
+        starts: 2,
+        evaluations: 10,
+        polish: 8,
+        samples: POINTS,
+        ..GradientSettings::default()
+    }
+}
+
+#[test]
+fn a_yarn_is_found_again_from_its_curves() {
+    let (problem, truth) = known();
+    let found = fit(&problem, &Here::new(&problem), &Way::Gradients(gradients())).unwrap();
+    let error = found.error;
+    assert!(error.comfort < 0.01 && error.full < 0.01 && error.compression < 0.02, "{error:?}");
+    let bending = found.material.parameters()[RodParameter::Bending as usize] / truth[RodParameter::Bending as usize];
+    assert!((bending - 1.0).abs() < 0.1, "{bending}");
+    assert_eq!(found.within[RodParameter::Onset as usize], 1.0, "it was held");
+}
+
+#[test]
+fn slopes_through_rest_shapes_are_those_of_differences() {
+    // What least squares is given, against differences of the whole: rest shapes and pulls with numbers that differ a little.
+    let (problem, truth) = known();
+    let here = Here::new(&problem);
+    let mut off = truth;
+    off[RodParameter::Bending as usize] *= 1.3;
+    let residuals = |rest: [f64; P], at: [f64; P], slopes: bool| {
+        let question = Question { rest, at, samples: POINTS, slopes };
+        let Ok(found) = here.answer(&question);
+        problem.residuals(&question, &found.unwrap())
+    };
+    let k = RodParameter::Bending as usize;
+    let moved = |by: f64| {
+        let mut coordinates = RodSpace::coordinates(off);
+        coordinates[k] += by;
+        RodSpace::parameters(coordinates)
+    };
+    let (up, down) = (moved(1e-3), moved(-1e-3));
+    let exact = residuals(off, off, true);
+    let [whole, by_rest] = [(up, down, true), (up, down, false)].map(|(up, down, both)| {
+        let [a, b] = [up, down].map(|rest| residuals(rest, if both { rest } else { off }, false).values);
+        a.iter().zip(&b).map(|(a, b)| (a - b) / 2e-3).collect::<Vec<f64>>()
+    });
+    let size = whole.iter().fold(0.0f64, |m, s| m.max(s.abs()));
+    assert!(size > 1e-3);
+    for ((row, whole), rest) in exact.slopes.iter().zip(&whole).zip(&by_rest) {
+        assert!((row[k] + rest - whole).abs() < 2e-2 * size, "{} + {rest}, {whole}", row[k]);
+    }
+}
+
+/// Fails at every third question.
+struct Fails<'a> {
+    by: Here<'a>,
+    asked: AtomicUsize,
+}
+
+impl Answers for Fails<'_> {
+    type Unanswered = Infallible;
+    fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Infallible> {
+        if self.asked.fetch_add(1, Ordering::Relaxed).is_multiple_of(3) { Ok(None) } else { self.by.answer(question) }
+    }
+}
+
+#[test]
+fn failures_cost_and_do_not_stop_a_fit() {
+    let (problem, _) = known();
+    let quick = SwarmSettings { particles: 6, steps: 2, samples: 2, local: [6, 2], ..SwarmSettings::default() };
+    for way in [Way::Swarm(quick), Way::Gradients(GradientSettings { evaluations: 2, polish: 1, ..gradients() })] {
+        let fails = Fails { by: Here::new(&problem), asked: AtomicUsize::new(1) };
+        // One thread: which question fails must not depend on who comes first.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let found = pool.install(|| fit(&problem, &fails, &way));
+        assert!(found.is_none_or(|found| found.cost.is_finite()));
+    }
+    // A tile that can be tested nowhere gives nothing, and no panic.
+    let nowhere = problem.space.within(RodParameter::OuterRadius, [1.0, 2.0]);
+    let nowhere = YarnProblem { space: nowhere, ..problem };
+    for way in [Way::Swarm(quick), Way::Local(quick), Way::Gradients(gradients())] {
+        assert!(fit(&nowhere, &Here::new(&nowhere), &way).is_none(), "{way:?}");
+    }
+}
+
+#[test]
+fn a_swarm_is_the_same_for_a_seed_on_any_number_of_threads() {
+    let (problem, _) = known();
+    let run = |threads: usize, seed: u64| {
+        let way = Way::Swarm(SwarmSettings {
+            particles: 8,
+            steps: 3,
+            samples: 2,
+            local: [8, 2],
+            seed,
+            ..SwarmSettings::default()
+        });
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| fit(&problem, &Here::new(&problem), &way)).unwrap()
+    };
+    let (one, two, other) = (run(1, 5), run(2, 5), run(2, 6));
+    assert_eq!(one.material, two.material);
+    assert_eq!((one.cost, one.evaluations), (two.cost, two.evaluations));
+    assert!(one.material != other.material);
+    // Better than where nobody looked: the middle of the bounds.
+    let middle = RodSpace::parameters(problem.space.at_parts([0.5; P]));
+    let question = Question::of(middle, 2, false);
+    let Ok(found) = Here::new(&problem).answer(&question);
+    assert!(one.cost < problem.residuals(&question, &found.unwrap()).cost());
+}
