@@ -1,0 +1,54 @@
+use std::f64::consts::FRAC_PI_2;
+
+use super::{pulled, relaxed};
+
+/// Angles along which tests pull: course, bias and wale.
+const ANGLES: [f64; 3] = [0.0, 0.6, FRAC_PI_2];
+
+#[test]
+fn a_tile_at_rest_bears_no_stress() {
+    for thick in [false, true] {
+        let reference = relaxed(1, 1, thick);
+        for angle in ANGLES {
+            let (_, found) = pulled(&reference, angle, 0.0, Some(0.0));
+            let (_, stretched) = pulled(&reference, angle, 0.02, None);
+            assert!(found.stress.abs().max(found.stress_across.abs()) < 1e-6 * stretched.stress, "{found:?}");
+            assert!(stretched.stress > 0.0 && stretched.stress_across.abs() < 1e-6 * stretched.stress);
+        }
+    }
+}
+
+#[test]
+fn stress_is_the_central_difference_of_the_energy() {
+    for thick in [false, true] {
+        let reference = relaxed(1, 1, thick);
+        for angle in ANGLES {
+            let (stretch, h) = (0.1, 1e-3);
+            let (_, free) = pulled(&reference, angle, stretch, None);
+            let ratio = free.compression / stretch;
+            let (mut tile, held) = pulled(&reference, angle, stretch, Some(ratio));
+            assert!((held.stress - free.stress).abs() < 1e-6 * free.stress, "{angle}: {held:?} {free:?}");
+            let [low, high] = [-h, h].map(|d| tile.solve(stretch + d, free.compression).unwrap().energy_density);
+            let [lower, higher] =
+                [-2.0 * h, 2.0 * h].map(|d| tile.solve(stretch + d, free.compression).unwrap().energy_density);
+            let difference = (8.0 * (high - low) - (higher - lower)) / (12.0 * h);
+            assert!((difference / free.stress - 1.0).abs() < 1e-5, "{angle}: {difference} {}", free.stress);
+            let [narrow, wide] = [h, -h].map(|d| tile.solve(stretch, free.compression + d).unwrap().energy_density);
+            assert!((narrow - wide).abs() / (2.0 * h) < 1e-3 * free.stress, "energy is least across");
+        }
+    }
+}
+
+#[test]
+fn a_doubled_tile_bears_the_same() {
+    let one = relaxed(1, 1, false);
+    for (columns, rows) in [(2, 1), (1, 2)] {
+        let more = relaxed(columns, rows, false);
+        assert!((more.area() / one.area() - (columns * rows) as f64).abs() < 1e-5, "{:?}", more.periods());
+        for angle in [0.0, 0.6] {
+            let [(_, a), (_, b)] = [&one, &more].map(|reference| pulled(reference, angle, 0.12, None));
+            assert!((b.stress / a.stress - 1.0).abs() < 1e-5, "{angle}: {a:?} {b:?}");
+            assert!((b.compression - a.compression).abs() < 1e-6);
+        }
+    }
+}
