@@ -106,7 +106,7 @@ impl TileSystem {
             gradient: vec![0.0; free.len()],
             period_gradient: [0.0; 2],
             held,
-            held_border: held.map(|held| vec![0.0; if held { free.len() } else { 0 }]),
+            held_border: [0, 1].map(|_| vec![0.0; if held == [false; 2] { 0 } else { free.len() }]),
             held_corner: [[0.0; 2]; 2],
             world: Vec::new(),
             period_weight: network.node_count() as f64 / 3.0,
@@ -167,6 +167,12 @@ impl TileSystem {
         }
         self.hold();
         energy
+    }
+
+    /// Whether the second number of the plane is held, of a system whose first is.
+    pub fn hold_second(&mut self, hold: bool) {
+        debug_assert!(self.held[0]);
+        self.held[1] = hold;
     }
 
     /// Takes the columns of the numbers that are held out of the system, and puts a one in their place.

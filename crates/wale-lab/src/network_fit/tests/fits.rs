@@ -8,10 +8,13 @@ use crate::network_fit::{NetworkFitError, NetworkFitSettings, NetworkProblem, Ne
 use crate::shell::{StretchCurve, StretchPoint};
 use crate::yarn_fit::Target;
 
+/// Factors by which the known stiffnesses differ from those at which the search begins.
+const TRUTH: [f64; TileStiffness::COUNT] = [0.6, 1.6, 1.3, 1.4, 1.5, 2.0];
+
 /// What a tile does that is pulled along course and wale.
 fn curves(factors: [f64; TileStiffness::COUNT]) -> Vec<Target> {
-    let (network, yarns, card) = knit_of(1, 1, false);
-    let ends = [(0.0, 0.4), (FRAC_PI_2, 0.2)];
+    let (network, yarns, card) = knit_of(1, 1, true);
+    let ends = [(0.0, 0.28), (FRAC_PI_2, 0.14)];
     let zero = ends.map(|(angle, end)| {
         let points = (1..=6).map(|k| [end * f64::from(k) / 6.0, f64::from(k), 0.0]).map(StretchPoint::from).collect();
         Target::new(&StretchCurve { angle, points }, true, 1.0)
@@ -31,13 +34,14 @@ fn curves(factors: [f64; TileStiffness::COUNT]) -> Vec<Target> {
 
 #[test]
 fn curves_of_known_stiffnesses_are_met() {
-    let targets = curves([0.6, 1.6, 0.7, 1.4, 2.0, 1.0]);
-    let (network, yarns, card) = knit_of(1, 1, false);
+    let targets = curves(TRUTH);
+    let (network, yarns, card) = knit_of(1, 1, true);
     let fit = fit_network(&network, &yarns, &card, &targets, &NetworkFitSettings::default()).unwrap();
+    let least = &fit.least_squares;
+    println!("{:?} {:?} {:?} {:?}\n{:?}", fit.stiffness, fit.within, fit.error, fit.start_error, least);
     let start = fit.start_error.unwrap();
     assert!(start.comfort > 0.05, "{start:?}");
     assert!(fit.error.comfort < 0.01 && fit.error.full < 0.01 && fit.error.compression < 0.02, "{:?}", fit.error);
-    assert!(fit.within[TileStiffness::Legs as usize] == 1.0 && fit.stiffness[TileStiffness::Legs as usize] == 0.0);
     // Bending is what a knit resists with at first: it is known.
     let bending = fit.stiffness[TileStiffness::Bending as usize] / yarn().bending_stiffness;
     assert!((bending / 1.6 - 1.0).abs() < 0.1, "{bending}: {:?} {:?}", fit.stiffness, fit.within);
@@ -45,7 +49,7 @@ fn curves_of_known_stiffnesses_are_met() {
 
 #[test]
 fn what_cannot_be_fitted_is_told() {
-    let (network, yarns, card) = knit_of(1, 1, false);
+    let (network, yarns, card) = knit_of(1, 1, true);
     let settings = NetworkFitSettings { max_evaluations: 3, ..NetworkFitSettings::default() };
     assert_eq!(fit_network(&network, &yarns, &card, &[], &settings).unwrap_err(), NetworkFitError::NoTarget);
     // Shorter than nothing.

@@ -38,7 +38,7 @@ pub(super) fn knit_of(columns: usize, rows: usize, thick: bool) -> (Network, Yar
 
 /// Settings so tight that differences can be taken.
 pub(super) fn tight(card: &KnitCard) -> TileSettings {
-    TileSettings { tolerance: 1e-10, ..TileSettings::of(card) }
+    TileSettings { tolerance: 2e-9, ..TileSettings::of(card) }
 }
 
 pub(super) fn relaxed(columns: usize, rows: usize, thick: bool) -> TileReference {
@@ -89,6 +89,55 @@ mod bits {
                     network.node_count(),
                     card.thickness.is_some()
                 );
+            }
+        }
+    }
+}
+
+#[test]
+fn explore() {
+    for thick in [false, true] {
+        for (c, r) in [(1, 1), (2, 1), (1, 2)] {
+            let (network, yarns, card) = knit_of(c, r, thick);
+            for seed in 1..5 {
+                let settings = TileSettings { seed, ..tight(&card) };
+                let rest = relax_tile(&network, &yarns, &card, &settings);
+                let reference = TileReference::new(&network, &yarns, &card, &settings, rest.clone()).unwrap();
+                let (_, bias) = pulled(&reference, std::f64::consts::FRAC_PI_4, 0.0, Some(0.0));
+                println!(
+                    "EX {thick} {c}x{r} seed {seed} E {:.9e} W {:.6e} C {:.6e} shear {:.4}",
+                    rest.energy, rest.wale_spacing, rest.course_spacing, bias.stress
+                );
+                if c * r == 1 && seed < 3 {
+                    for n in 0..4 {
+                        println!(
+                            "   {:?} {:?}",
+                            &rest.coordinates[5 * n..5 * n + 5]
+                                .iter()
+                                .map(|x| (x * 1e6).round() / 1e3)
+                                .collect::<Vec<_>>(),
+                            network.chart_place[n]
+                        );
+                    }
+                }
+            }
+        }
+        let reference = relaxed(1, 1, thick);
+        for angle in [0.0, 1.5707963] {
+            let mut tile = StretchedTile::new(&reference, angle, true).unwrap();
+            for k in 0..25 {
+                match tile.solve(0.02 * k as f64, 0.0) {
+                    Ok(f) => println!(
+                        "PULL {thick} {angle:.2} {:.3} {:.4} {:.4} it {} E {:.6} stable {:?}",
+                        f.stretch,
+                        f.stress,
+                        f.compression,
+                        f.iterations,
+                        f.energy_density,
+                        tile.slopes(None).map(|s| s.stable)
+                    ),
+                    Err(e) => println!("PULL {thick} {angle:.2} {e}"),
+                }
             }
         }
     }

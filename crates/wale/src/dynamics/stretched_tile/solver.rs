@@ -172,6 +172,12 @@ impl StretchedTile {
         })
     }
 
+    /// Holds the compression, from here on given, or lets it go.
+    pub fn hold_compression(&mut self, hold: bool) {
+        self.free_compression = !hold;
+        self.system.hold_second(hold);
+    }
+
     /// Where the last two equilibria point, for the stretch and the given compression of `start`.
     fn foreseen(&self, start: &[f64]) -> Option<Vec<f64>> {
         let (last, before) = (self.last.as_ref()?, self.before.as_ref()?);
