@@ -41,7 +41,7 @@ fn stress_is_the_central_difference_of_the_energy() {
     for thick in [false, true] {
         let reference = relaxed(1, 1, thick);
         for angle in ANGLES {
-            let (stretch, h) = (0.1, 1e-3);
+            let (stretch, h) = (0.1, 2.5e-4);
             let (mut tile, free) = pulled(&reference, angle, stretch, None);
             tile.hold_compression(true);
             let held = tile.solve(stretch, free.compression).unwrap();
@@ -63,8 +63,9 @@ fn a_doubled_tile_bears_the_same() {
     for (columns, rows) in [(2, 1), (1, 2)] {
         let more = relaxed(columns, rows, true);
         assert!((more.area() / one.area() - (columns * rows) as f64).abs() < 1e-5, "{:?}", more.periods());
-        for angle in [0.0, 0.6] {
-            let [(_, a), (_, b)] = [&one, &more].map(|reference| pulled(reference, angle, 0.12, None));
+        // Farther along the bias the doubled tile leaves for an equilibrium in which its loops differ.
+        for (angle, stretch) in [(0.0, 0.12), (0.6, 0.03), (FRAC_PI_2, 0.12)] {
+            let [(_, a), (_, b)] = [&one, &more].map(|reference| pulled(reference, angle, stretch, None));
             assert!((b.stress / a.stress - 1.0).abs() < 1e-5, "{angle}: {a:?} {b:?}");
             assert!((b.compression - a.compression).abs() < 1e-6);
         }
