@@ -54,13 +54,19 @@ pub enum NetworkFitError {
     /// There is nothing to fit to.
     #[error("there is no curve to fit to")]
     NoTarget,
-    /// A stiffness from which the search begins is none, or bounds are.
+    /// A stiffness from which the search begins is none.
     #[error("the {what} stiffness is {value}, and should be positive and finite")]
     Stiffness {
         /// Which.
         what: &'static str,
         /// What it is.
         value: f64,
+    },
+    /// Bounds or a start are no positive factors.
+    #[error("bounds and starts of the {what} stiffness should be positive factors in their order")]
+    Bounds {
+        /// Which stiffness.
+        what: &'static str,
     },
     /// The tile does not come to rest.
     #[error(transparent)]
@@ -111,7 +117,7 @@ pub fn fit_network(
     settings: &NetworkFitSettings,
 ) -> Result<NetworkFit, NetworkFitError> {
     let yarns = yarns.into();
-    if targets.is_empty() {
+    if targets.is_empty() || targets.iter().any(|target| target.points.is_empty()) {
         return Err(NetworkFitError::NoTarget);
     }
     let given = TileStiffness::of(&yarns, card);
@@ -119,6 +125,11 @@ pub fn fit_network(
         let none = k == TileStiffness::Legs as usize && card.thickness.is_none();
         if !none && !(value > 0.0 && value.is_finite()) {
             return Err(NetworkFitError::Stiffness { what: TileStiffness::NAMES[k], value });
+        }
+        let ([low, high], starts) = (settings.bounds[k], settings.starts.iter().map(|start| start[k]));
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if !positive(low) || !positive(high) || low > high || !starts.into_iter().all(positive) {
+            return Err(NetworkFitError::Bounds { what: TileStiffness::NAMES[k] });
         }
     }
     let tile = settings.tile.unwrap_or_else(|| TileSettings::of(card));

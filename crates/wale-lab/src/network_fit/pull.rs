@@ -21,6 +21,9 @@ impl Default for NetworkPullSettings {
     }
 }
 
+/// No step is shorter, whatever the settings say \[–\].
+const SHORTEST: f64 = 1e-5;
+
 /// Derivatives of the logarithms of a relaxed tile's periods by its stiffnesses.
 pub type SizeSlopes = [[f64; TileStiffness::COUNT]; 2];
 
@@ -62,7 +65,8 @@ fn advance(
     to: f64,
     settings: &NetworkPullSettings,
 ) -> Result<StretchedEquilibrium, StretchError> {
-    let (mut at, mut step) = (from, settings.largest_step);
+    let least = settings.least_step.max(SHORTEST);
+    let (mut at, mut step) = (from, settings.largest_step.max(least));
     loop {
         let left = (to - at).abs();
         // Even steps, so that none is tiny.
@@ -70,9 +74,7 @@ fn advance(
         match tile.solve(next, 0.0) {
             Ok(found) if next == to => return Ok(found),
             Ok(_) => at = next,
-            Err(StretchError::NoEquilibrium { .. } | StretchError::Cholesky(_))
-                if 0.5 * step >= settings.least_step =>
-            {
+            Err(StretchError::NoEquilibrium { .. } | StretchError::Cholesky(_)) if 0.5 * step >= least => {
                 step *= 0.5;
             }
             Err(error) => return Err(error),

@@ -51,8 +51,8 @@ impl TileStiffness {
         let [stretch, bending, wrapping_stiffness, length_stiffness, spacing_stiffness, leg_stiffness] = stiffness;
         let first = yarns.first();
         let changed = |yarn: &YarnCard| YarnCard {
-            stretch_stiffness: stretch * (yarn.stretch_stiffness / first.stretch_stiffness),
-            bending_stiffness: bending * (yarn.bending_stiffness / first.bending_stiffness),
+            stretch_stiffness: stretch * share(yarn.stretch_stiffness, first.stretch_stiffness),
+            bending_stiffness: bending * share(yarn.bending_stiffness, first.bending_stiffness),
             ..yarn.clone()
         };
         let all: Vec<_> = yarns.cards().iter().map(changed).collect();
@@ -60,6 +60,11 @@ impl TileStiffness {
         let card = KnitCard { wrapping_stiffness, length_stiffness, spacing_stiffness, thickness, ..card.clone() };
         (Yarns::new(all[0].clone(), all[1..].iter().cloned()), card)
     }
+}
+
+/// A yarn's stiffness over that of the first.
+fn share(own: f64, first: f64) -> f64 {
+    if first > 0.0 { own / first } else { 1.0 }
 }
 
 /// The energies of a tile with one stiffness at one and the others at zero, from which the forces of all follow.

@@ -37,8 +37,6 @@ fn curves_of_known_stiffnesses_are_met() {
     let targets = curves(TRUTH);
     let (network, yarns, card) = knit_of(1, 1, true);
     let fit = fit_network(&network, &yarns, &card, &targets, &NetworkFitSettings::default()).unwrap();
-    let least = &fit.least_squares;
-    println!("{:?} {:?} {:?} {:?}\n{:?}", fit.stiffness, fit.within, fit.error, fit.start_error, least);
     let start = fit.start_error.unwrap();
     assert!(start.comfort > 0.05, "{start:?}");
     assert!(fit.error.comfort < 0.01 && fit.error.full < 0.01 && fit.error.compression < 0.02, "{:?}", fit.error);
@@ -60,6 +58,10 @@ fn what_cannot_be_fitted_is_told() {
     weak.stretch_stiffness = 0.0;
     let told = fit_network(&network, &weak, &card, &curves([1.0; 6])[..1], &settings).unwrap_err();
     assert!(matches!(told, NetworkFitError::Stiffness { what: "stretch", .. }));
+    let mut wild = settings.clone();
+    wild.bounds[1] = [2.0, 1.0];
+    let told = fit_network(&network, &yarns, &card, &[Target::new(&far, true, 1.0)], &wild).unwrap_err();
+    assert_eq!(told, NetworkFitError::Bounds { what: "bending" });
     let mut restless = settings.clone();
     restless.tile = Some(TileSettings { max_iterations: 1, ..TileSettings::of(&card) });
     let target = Target::new(&far, true, 1.0);

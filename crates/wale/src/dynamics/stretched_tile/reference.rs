@@ -24,7 +24,7 @@ impl TileReference {
     /// A tile that [`crate::dynamics::tile_equilibrium`] has brought to rest with these yarns, card and settings.
     ///
     /// # Errors
-    /// [`StretchError::NotRelaxed`] if it did not come to rest.
+    /// [`StretchError::NotRelaxed`] if it did not come to rest, or is another network's.
     pub fn new(
         network: &Network,
         yarns: impl Into<Yarns>,
@@ -35,7 +35,7 @@ impl TileReference {
         let n = rest.coordinates.len();
         let own = TileCoordinates::new(network).own().len();
         let finite = rest.coordinates.iter().all(|x| x.is_finite());
-        if !rest.converged || n != own + 2 || !finite {
+        if !rest.converged || own == 0 || n != own + 2 || !finite {
             return Err(StretchError::NotRelaxed { residual: rest.residual });
         }
         let periods = [rest.coordinates[n - 2], rest.coordinates[n - 1]];
