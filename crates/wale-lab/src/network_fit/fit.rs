@@ -123,7 +123,7 @@ pub fn fit_network(
     let given = TileStiffness::of(&yarns, card);
     for (k, &value) in given.iter().enumerate() {
         let none = k == TileStiffness::Legs as usize && card.thickness.is_none();
-        if !none && !(value > 0.0 && value.is_finite()) {
+        if !(none || value > 0.0 && value.is_finite()) {
             return Err(NetworkFitError::Stiffness { what: TileStiffness::NAMES[k], value });
         }
         let ([low, high], starts) = (settings.bounds[k], settings.starts.iter().map(|start| start[k]));

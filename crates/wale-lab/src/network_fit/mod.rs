@@ -1,4 +1,4 @@
-//! Stiffnesses of the contact model fitted to the stretch of a fabric: what [Cirio2017] left to artists.
+//! Stiffnesses of the contact model fitted to the stretch of a fabric: what \[Cirio2017\] left to artists.
 
 mod fit;
 mod problem;

@@ -1,3 +1,5 @@
+//! Fits of known curves, and of what cannot be fitted.
+
 use std::f64::consts::FRAC_PI_2;
 
 use wale::dynamics::tile_equilibrium::TileSettings;

@@ -1,3 +1,5 @@
+//! Straight yarns, of which the answer is known, and stretches that cannot be.
+
 use std::f64::consts::FRAC_PI_4;
 
 use glam::DVec3;

@@ -1,3 +1,5 @@
+//! Slopes against differences.
+
 use wale::dynamics::stretched_tile::{StretchedEquilibrium, TileReference};
 use wale::dynamics::tile_equilibrium::relax_tile_from;
 use wale::dynamics::tile_stiffness::TileStiffness;

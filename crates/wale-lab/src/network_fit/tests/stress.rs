@@ -1,3 +1,5 @@
+//! Stress against energy, mirror images and doubled tiles.
+
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use wale::dynamics::stretched_tile::TileReference;
