@@ -6,6 +6,7 @@ pub mod curve;
 pub mod fabric_file;
 pub mod fabric_fit;
 pub mod least_squares;
+pub mod network_fit;
 pub mod register;
 pub mod shell;
 pub mod virtual_test;

@@ -13,7 +13,7 @@ mod space;
 pub mod swarm;
 mod target;
 
-pub use objective::{BendingTarget, YarnFitError, errors};
+pub use objective::{BendingTarget, YarnFitError, add_residuals, errors};
 pub use progress::{Progress, Step};
 pub use pull::{Answer, PullSettings, pull};
 pub use space::RodSpace;

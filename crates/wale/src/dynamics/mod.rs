@@ -11,11 +11,14 @@ mod scatter;
 mod selected;
 pub mod state;
 pub mod step;
+pub mod stretched_tile;
 mod surroundings;
 pub mod system;
 pub mod terms;
+mod tile_descent;
 pub mod tile_equilibrium;
 pub mod tile_sensitivity;
+pub mod tile_stiffness;
 mod tile_system;
 
 pub use state::State;

@@ -1,5 +1,5 @@
-//! The energy of a periodic tile by its unknowns, and its second derivatives as a block-sparse matrix with the two periods
-//! beside it.
+//! The energy of a periodic tile by its unknowns, and its second derivatives as a block-sparse matrix with the two numbers of
+//! its plane beside it.
 
 use std::sync::Arc;
 
@@ -18,7 +18,8 @@ use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
 /// Values of a block.
 const BLOCK_VALUES: usize = BLOCK * BLOCK;
 
-/// A tile's elements over its unknowns: own slots, then the two periods.
+/// A tile's elements over its unknowns: own slots, then the two numbers of its plane, the periods where it relaxes.
+#[derive(Debug)]
 pub(super) struct TileSystem {
     pub coordinates: TileCoordinates,
     mechanics: Mechanics,
@@ -28,9 +29,13 @@ pub(super) struct TileSystem {
     second: Bordered,
     /// Where in the matrix the second derivatives of every element go, element by element.
     places: Vec<u32>,
-    /// Gradient by the own slots and by the periods \[N\].
+    /// Gradient by the own slots and by the numbers of the plane \[N\], those that are held too.
     pub gradient: Vec<f64>,
     pub period_gradient: [f64; 2],
+    /// Which numbers of the plane are held, and their columns, which then are not part of the system.
+    held: [bool; 2],
+    held_border: [Vec<f64>; 2],
+    held_corner: [[f64; 2]; 2],
     world: Vec<f64>,
     /// What a shift counts on a period, for one on a slot: as much as the nodes that move with it.
     period_weight: f64,
@@ -51,14 +56,23 @@ impl TileSystem {
     /// # Errors
     /// If the system is too large.
     pub fn new(network: &Network, yarns: &Yarns, card: &KnitCard, bed: f64) -> Result<Self, CholeskyError> {
-        let mut coordinates = TileCoordinates::new(network);
+        Self::with(network, yarns, card, bed, TileCoordinates::new(network), [false; 2])
+    }
+
+    /// Over given coordinates, of which numbers of the plane may be held.
+    ///
+    /// # Errors
+    /// If the system is too large.
+    pub fn with(
+        network: &Network,
+        yarns: &Yarns,
+        card: &KnitCard,
+        bed: f64,
+        mut coordinates: TileCoordinates,
+        held: [bool; 2],
+    ) -> Result<Self, CholeskyError> {
         let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
-        let mut springs = Elements::default();
-        if bed > 0.0 {
-            for node in 0..network.node_count() {
-                springs.push(Foundation { stiffness: bed, place: 0.0 }, [dof(BLOCK * node + 2)]);
-            }
-        }
+        let springs = self::bed(network, bed);
         // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else.
         let mut free = coordinates.own().free().to_vec();
         free[0] = false;
@@ -91,6 +105,9 @@ impl TileSystem {
         Ok(Self {
             gradient: vec![0.0; free.len()],
             period_gradient: [0.0; 2],
+            held,
+            held_border: [0, 1].map(|_| vec![0.0; if held == [false; 2] { 0 } else { free.len() }]),
+            held_corner: [[0.0; 2]; 2],
             world: Vec::new(),
             period_weight: network.node_count() as f64 / 3.0,
             coordinates,
@@ -131,7 +148,8 @@ impl TileSystem {
                     for (i, &dof) in stencil.iter().enumerate() {
                         let value = curvature(i, j);
                         let from = coordinates.source(dof);
-                        column[from.axis] += from.factor * value;
+                        column[0] += from.by[0] * value;
+                        column[1] += from.by[1] * value;
                         second.matrix.values[*places.next().expect("a place for every value") as usize] += value;
                     }
                     if free[to.of as usize] {
@@ -139,20 +157,63 @@ impl TileSystem {
                         second.border[0][to.of as usize] += column[0];
                         second.border[1][to.of as usize] += column[1];
                     }
-                    period_gradient[to.axis] += to.factor * slope[j];
-                    second.corner[to.axis][0] += to.factor * column[0];
-                    second.corner[to.axis][1] += to.factor * column[1];
+                    for (axis, by) in to.by.into_iter().enumerate() {
+                        period_gradient[axis] += by * slope[j];
+                        second.corner[axis][0] += by * column[0];
+                        second.corner[axis][1] += by * column[1];
+                    }
                 }
             });
         }
+        self.hold();
         energy
     }
 
-    /// Largest component of the gradient \[N\], by the own slots and by the periods.
+    /// Whether the second number of the plane is held, of a system whose first is.
+    pub fn hold_second(&mut self, hold: bool) {
+        debug_assert!(self.held[0]);
+        self.held[1] = hold;
+    }
+
+    /// Takes the columns of the numbers that are held out of the system, and puts a one in their place.
+    fn hold(&mut self) {
+        self.held_corner = self.second.corner;
+        for axis in (0..2).filter(|&axis| self.held[axis]) {
+            std::mem::swap(&mut self.second.border[axis], &mut self.held_border[axis]);
+            self.second.border[axis].fill(0.0);
+            for other in 0..2 {
+                self.second.corner[axis][other] = 0.0;
+                self.second.corner[other][axis] = 0.0;
+            }
+            self.second.corner[axis][axis] = 1.0;
+        }
+    }
+
+    /// Second derivatives by a number of the plane that is held and by the own slots, where it was linearised last; those by both
+    /// numbers.
+    pub fn held_border(&self, axis: usize) -> (&[f64], [[f64; 2]; 2]) {
+        (&self.held_border[axis], self.held_corner)
+    }
+
+    /// The gradient of the numbers of the plane that are not held.
+    fn period_force(&self) -> [f64; 2] {
+        std::array::from_fn(|axis| if self.held[axis] { 0.0 } else { self.period_gradient[axis] })
+    }
+
+    /// Largest component of the gradient \[N\], by the own slots and by the numbers of the plane.
     pub fn largest_force(&self) -> f64 {
         let own = self.gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
-        let [w, h] = self.period_gradient;
+        let [w, h] = self.period_force();
         own.max(w.abs()).max(h.abs())
+    }
+
+    /// Solves with the second derivatives and a multiple of the identity \[N/m\]; the right side is replaced by the solution. Whether
+    /// they are positive definite.
+    ///
+    /// # Errors
+    /// If something is not finite.
+    pub fn solve(&mut self, shift: f64, own: &mut [f64], plane: &mut [f64; 2]) -> Result<bool, CholeskyError> {
+        self.second.solve(shift, self.period_weight, own, plane)
     }
 
     /// Newton's step with a multiple of the identity \[N/m\] added to the second derivatives, and its slope and curvature:
@@ -162,8 +223,8 @@ impl TileSystem {
     /// If something is not finite.
     pub fn step(&mut self, shift: f64) -> Result<Option<Step>, CholeskyError> {
         let mut direction: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
-        let mut periods = self.period_gradient.map(|g| -g);
-        if !self.second.solve(shift, self.period_weight, &mut direction, &mut periods)? {
+        let mut periods = self.period_force().map(|g| -g);
+        if !self.solve(shift, &mut direction, &mut periods)? {
             return Ok(None);
         }
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
@@ -179,11 +240,44 @@ impl TileSystem {
         let mut row = vec![0.0; self.gradient.len()];
         let mut periods = [0.0; 2];
         periods[axis] = 1.0;
-        if !self.second.solve(0.0, self.period_weight, &mut row, &mut periods).ok()? {
+        if !self.solve(0.0, &mut row, &mut periods).ok()? {
             return None;
         }
         row.extend(periods);
         Some(row)
+    }
+
+    /// Derivative of the energy along a motion of the world \[J\].
+    pub fn first_along(&mut self, unknowns: &[f64], motion: &[f64]) -> f64 {
+        self.coordinates.place(unknowns, &mut self.world);
+        let mut sum = 0.0;
+        for set in sets(&self.mechanics, &self.bed) {
+            set.visit_gradient(&self.world, &mut |stencil, gradient| {
+                sum += stencil.iter().zip(gradient).map(|(&dof, g)| g * motion[dof as usize]).sum::<f64>();
+            });
+        }
+        sum
+    }
+
+    /// Second derivative of the energy along two motions of the world \[J\].
+    pub fn second_along(&mut self, unknowns: &[f64], one: &[f64], other: &[f64]) -> f64 {
+        self.coordinates.place(unknowns, &mut self.world);
+        let mut sum = 0.0;
+        for set in sets(&self.mechanics, &self.bed) {
+            set.visit(&self.world, 0.0, &mut |stencil, _, curvature| {
+                for (j, &b) in stencil.iter().enumerate() {
+                    let column: f64 = stencil.iter().enumerate().map(|(i, &a)| one[a as usize] * curvature(i, j)).sum();
+                    sum += column * other[b as usize];
+                }
+            });
+        }
+        sum
+    }
+
+    /// Whether every segment has a rest length.
+    pub fn is_sound(&mut self, unknowns: &[f64]) -> bool {
+        self.coordinates.place(unknowns, &mut self.world);
+        self.mechanics.stretch.stencils.iter().all(|s| self.world[s[7] as usize] - self.world[s[3] as usize] > 0.0)
     }
 
     /// The longest part of a step that no segment's rest length reaches zero in, and in which no coordinate moves further than
@@ -193,7 +287,7 @@ impl TileSystem {
         let n = self.coordinates.own().len();
         let change = |dof: Dof| {
             let source = self.coordinates.source(dof);
-            direction[source.of as usize] + source.factor * direction[n + source.axis]
+            direction[source.of as usize] + source.by[0] * direction[n] + source.by[1] * direction[n + 1]
         };
         let mut longest: f64 = 1.0;
         for stencil in &self.mechanics.stretch.stencils {
@@ -212,6 +306,17 @@ impl TileSystem {
 pub(super) struct Step {
     pub direction: Vec<f64>,
     pub foreseen: Foreseen,
+}
+
+/// Springs under every node \[N/m\]; none without stiffness.
+pub(super) fn bed(network: &Network, stiffness: f64) -> Elements<Foundation, 1> {
+    let mut springs = Elements::default();
+    if stiffness > 0.0 {
+        for node in 0..network.node_count() {
+            springs.push(Foundation { stiffness, place: 0.0 }, [dof(BLOCK * node + 2)]);
+        }
+    }
+    springs
 }
 
 fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 11] {

@@ -10,4 +10,4 @@ pub mod tile;
 pub use coordinates::{CoordinateMap, Coordinates, Dof};
 pub use elements::{ElementSet, Elements};
 pub use mechanics::Mechanics;
-pub use tile::TileCoordinates;
+pub use tile::{Matrix2, PlaneMap, TileCoordinates};

@@ -7,52 +7,110 @@ use glam::DVec3;
 use super::coordinates::{BLOCK, CoordinateMap, Coordinates, Dof, dof};
 use crate::model::{Network, NodeId, PassId, YarnId};
 
-/// World coordinates of a tile: the nodes' own, then those of images. Each is an unknown, a multiple of a period, and a
-/// constant.
+/// A matrix of the plane, by rows.
+pub type Matrix2 = [[f64; 2]; 2];
+
+/// How the plane of a tile follows two numbers `q`: a place `X`, in multiples of the periods, lies at `(B + q₀ R₀ + q₁ R₁) X`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaneMap {
+    /// `B` \[m\]; its columns are the periods where both numbers are zero.
+    pub base: Matrix2,
+    /// `R₀` and `R₁`, in metres over the unit of the numbers.
+    pub rates: [Matrix2; 2],
+}
+
+impl PlaneMap {
+    /// The numbers are the periods, `w` along x and `h` along y \[m\].
+    pub const PERIODS: Self = Self { base: [[0.0; 2]; 2], rates: [[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]]] };
+
+    /// The matrix at two numbers.
+    #[must_use]
+    pub fn at(&self, q: [f64; 2]) -> Matrix2 {
+        let rate = self.rate(q);
+        std::array::from_fn(|i| std::array::from_fn(|j| self.base[i][j] + rate[i][j]))
+    }
+
+    /// Its change where the two numbers change so.
+    #[must_use]
+    pub fn rate(&self, change: [f64; 2]) -> Matrix2 {
+        let [a, b] = &self.rates;
+        std::array::from_fn(|i| std::array::from_fn(|j| change[0] * a[i][j] + change[1] * b[i][j]))
+    }
+}
+
+/// World coordinates of a tile: the nodes' own, then those of images. Each is an unknown, multiples of two numbers of the plane,
+/// and a constant.
 ///
-/// The unknowns are the nodes' slots followed by the two periods, `w` along x and `h` along y \[m\]. A slot of a position
-/// holds the place of its node less that part of the periods at which the node was laid out, so that a period that grows
-/// stretches the whole tile evenly and not its seam.
+/// The unknowns are the nodes' slots followed by the two numbers: for a tile that relaxes, the periods `w` along x and `h` along y
+/// \[m\]; for one that is stretched, how far ([`PlaneMap`]). A slot of a position holds the place of its node less that to which the
+/// plane carries it, so that a period that grows stretches the whole tile evenly and not its seam.
 #[derive(Clone, Debug)]
 pub struct TileCoordinates {
     own: Coordinates,
     yarn_of: Vec<YarnId>,
     closure_length: Vec<f64>,
+    map: PlaneMap,
     /// How each world coordinate follows from the unknowns.
     sources: Vec<Source>,
     known_positions: HashMap<(NodeId, [i16; 2]), Dof>,
     known_sliding: HashMap<(PassId, i16), Dof>,
 }
 
-/// A world coordinate: `y[of] + factor · period[axis] + shift`.
+/// A world coordinate: `y[of] + by · q + shift`.
 #[derive(Clone, Copy, Debug)]
 pub struct Source {
     /// The unknown it follows.
     pub of: Dof,
-    /// Which period it moves with.
-    pub axis: usize,
-    /// Multiples of that period \[–\].
-    pub factor: f64,
+    /// Multiples of the two numbers of the plane.
+    pub by: [f64; 2],
     /// Constant shift \[m\].
     pub shift: f64,
+    /// Of a coordinate in the plane, which one, and the place `X` that the plane carries, in multiples of the periods.
+    plane: Option<(usize, [f64; 2])>,
+}
+
+impl Source {
+    fn still(of: Dof) -> Self {
+        Self { of, by: [0.0; 2], shift: 0.0, plane: None }
+    }
+
+    /// A coordinate of a place in the plane, displaced by an unknown.
+    fn carried(of: Dof, row: usize, place: [f64; 2], map: &PlaneMap) -> Self {
+        let [by, other] = map.rates.map(|rate| times(&rate[row], place));
+        Self { of, by: [by, other], shift: times(&map.base[row], place), plane: Some((row, place)) }
+    }
+}
+
+fn times(row: &[f64; 2], place: [f64; 2]) -> f64 {
+    row[0] * place[0] + row[1] * place[1]
 }
 
 impl TileCoordinates {
-    /// Lays out a periodic network.
+    /// Lays out a periodic network whose periods are unknown.
     #[must_use]
     pub fn new(network: &Network) -> Self {
-        let own = Coordinates::new(network);
-        let still = |of| Source { of, axis: 0, factor: 0.0, shift: 0.0 };
-        let mut sources: Vec<Source> = (0..own.len()).map(|slot| still(dof(slot))).collect();
         let [w, h] = periods(network);
-        for (node, x) in network.position.iter().enumerate() {
-            sources[BLOCK * node].factor = x.x / w;
-            sources[BLOCK * node + 1] = Source { axis: 1, factor: x.y / h, ..still(dof(BLOCK * node + 1)) };
+        let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / w, x.y / h]).collect();
+        Self::with_plane(network, &places, &PlaneMap::PERIODS)
+    }
+
+    /// A periodic network whose nodes are carried by the plane from given places, in multiples of the periods; nodes beyond them
+    /// from none.
+    #[must_use]
+    pub fn with_plane(network: &Network, places: &[[f64; 2]], map: &PlaneMap) -> Self {
+        let own = Coordinates::new(network);
+        let mut sources: Vec<Source> = (0..own.len()).map(|slot| Source::still(dof(slot))).collect();
+        for (node, &place) in places.iter().enumerate().take(own.node_count()) {
+            for row in 0..2 {
+                let slot = BLOCK * node + row;
+                sources[slot] = Source::carried(dof(slot), row, place, map);
+            }
         }
         Self {
             own,
             yarn_of: network.pass_yarn(),
             closure_length: network.yarn_closure.iter().map(|c| c.map_or(0.0, |(_, length)| length)).collect(),
+            map: *map,
             sources,
             known_positions: HashMap::new(),
             known_sliding: HashMap::new(),
@@ -63,7 +121,12 @@ impl TileCoordinates {
     pub fn own(&self) -> &Coordinates {
         &self.own
     }
-    /// Number of unknowns, fixed slots included: own slots, then the two periods.
+    /// How the plane follows its two numbers.
+    #[must_use]
+    pub fn map(&self) -> &PlaneMap {
+        &self.map
+    }
+    /// Number of unknowns, fixed slots included: own slots, then the two numbers of the plane.
     #[must_use]
     pub fn unknown_len(&self) -> usize {
         self.own.len() + 2
@@ -75,21 +138,34 @@ impl TileCoordinates {
     }
     /// World coordinates from the unknowns.
     pub fn place(&self, unknowns: &[f64], world: &mut Vec<f64>) {
-        let periods = [unknowns[self.own.len()], unknowns[self.own.len() + 1]];
+        let [p, q] = [unknowns[self.own.len()], unknowns[self.own.len() + 1]];
         world.clear();
         world.extend(
             self.sources
                 .iter()
-                .map(|source| unknowns[source.of as usize] + source.factor * periods[source.axis] + source.shift),
+                .map(|source| unknowns[source.of as usize] + source.by[0] * p + source.by[1] * q + source.shift),
         );
     }
-    /// Unknowns of the nodes' own world coordinates and the two periods \[m\], as one vector.
+    /// How the world moves where all unknowns change so.
+    #[must_use]
+    pub fn moved(&self, change: &[f64]) -> Vec<f64> {
+        let [p, q] = [change[self.own.len()], change[self.own.len() + 1]];
+        let one = |source: &Source| change[source.of as usize] + source.by[0] * p + source.by[1] * q;
+        self.sources.iter().map(one).collect()
+    }
+    /// How the world moves where the own slots change so and the plane goes by a matrix, `dx = M X`.
+    #[must_use]
+    pub fn motion(&self, own: &[f64], matrix: &Matrix2) -> Vec<f64> {
+        let plane = |source: &Source| source.plane.map_or(0.0, |(row, place)| times(&matrix[row], place));
+        self.sources.iter().map(|source| own[source.of as usize] + plane(source)).collect()
+    }
+    /// Unknowns of the nodes' own world coordinates and the two numbers of the plane, as one vector.
     #[must_use]
     pub fn unknowns(&self, mut world: Vec<f64>) -> Vec<f64> {
         let n = self.own.len();
-        let periods = [world[n], world[n + 1]];
+        let [p, q] = [world[n], world[n + 1]];
         for (x, source) in world[..n].iter_mut().zip(&self.sources) {
-            *x -= source.factor * periods[source.axis];
+            *x -= source.by[0] * p + source.by[1] * q + source.shift;
         }
         world
     }
@@ -123,9 +199,15 @@ impl CoordinateMap for TileCoordinates {
             return [known, known + 1, known + 2];
         }
         let own = |k: usize| self.sources[first as usize + k];
+        let away = |source: Source, map: &PlaneMap| match source.plane {
+            Some((row, [x, y])) => {
+                Source::carried(source.of, row, [x + f64::from(image[0]), y + f64::from(image[1])], map)
+            }
+            None => source,
+        };
         let [x, y, z] = [own(0), own(1), own(2)];
-        let start = self.push(Source { factor: x.factor + f64::from(image[0]), ..x });
-        self.push(Source { factor: y.factor + f64::from(image[1]), ..y });
+        let start = self.push(away(x, &self.map));
+        self.push(away(y, &self.map));
         self.push(z);
         self.known_positions.insert((node, image), start);
         [start, start + 1, start + 2]
@@ -139,7 +221,7 @@ impl CoordinateMap for TileCoordinates {
             return known;
         }
         let shift = f64::from(turns) * self.closure_length[self.yarn_of[pass.index()].index()];
-        let at = self.push(Source { of, axis: 0, factor: 0.0, shift });
+        let at = self.push(Source { shift, ..Source::still(of) });
         self.known_sliding.insert((pass, turns), at);
         at
     }
