@@ -40,7 +40,7 @@ fn a_yarn_is_fitted_the_same_in_one_go_after_a_kill_and_by_answers_from_elsewher
     assert!(error["comfort"].as_f64().unwrap() < 0.5, "{error}");
     let card = read("whole", "card.toml");
     assert!(card.contains("[yarn]") && read("whole", "tile.pyp").contains("*Q"));
-    assert!(read("whole", "report.html").contains("yarn: mean error"));
+    assert!(read("whole", "report.html").contains("yarn in full contact: mean error"));
 
     // Killed in the middle of writing an answer, on one thread from there.
     let answers = read("whole", "answers.jsonl");
@@ -109,7 +109,7 @@ fn a_yarn_is_fitted_the_same_in_one_go_after_a_kill_and_by_answers_from_elsewher
     assert_eq!(read("asked", "answers.jsonl"), before);
     // Answers of another problem are not gone on with.
     fs::remove_file(out("asked").join("card.toml")).unwrap();
-    for file in ["curves.csv", "curves.svg", "report.html", "tile.pyp"] {
+    for file in ["curves.csv", "curves.svg", "report.html", "tile.pyp", "swatch.toml"] {
         fs::remove_file(out("asked").join(file)).unwrap();
     }
     let other = fit(&out("asked"), &["--without", "phases"], "");

@@ -136,7 +136,7 @@ pub fn fit_network(
     let problem =
         NetworkProblem::new(network, yarns, card, targets.to_vec(), tile, settings.pull, settings.relaxations)?;
     let at = |logarithms: &[f64; P]| -> [f64; P] { std::array::from_fn(|k| given[k] * logarithms[k].exp()) };
-    let evaluate = |logarithms: &[f64; P]| -> Result<Option<Residuals<P>>, Infallible> {
+    let evaluate = |logarithms: &[f64; P], _| -> Result<Option<Residuals<P>>, Infallible> {
         let stiffness = at(logarithms);
         Ok(problem.evaluate(stiffness, true).map(|found| problem.residuals(stiffness, &found)))
     };

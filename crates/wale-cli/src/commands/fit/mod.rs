@@ -10,12 +10,14 @@ use std::path::{Path, PathBuf};
 
 use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
+use wale::scene::Scene;
 use wale_lab::card_file::YarnCard;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
 use wale_lab::fabric_fit::{FabricFit, FabricFitError, fit_fabric};
+use wale_lab::network_fit::NetworkFit;
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
 use wale_lab::yarn_fit::run::YarnFit;
-use wale_lab::yarn_tile::write_pattern;
+use wale_lab::yarn_tile::{YarnTile, write_pattern};
 
 use crate::arguments::fit::Fit;
 use crate::exit::{Code, Failure};
@@ -23,7 +25,7 @@ use crate::opened::scene_failure;
 use crate::{machine, output, say};
 
 /// Files of a finished fit; what they are is in `docs/topics/fabric-files.md`.
-const RESULTS: [&str; 5] = ["card.toml", "curves.csv", "curves.svg", "report.html", "tile.pyp"];
+const RESULTS: [&str; 6] = ["card.toml", "curves.csv", "curves.svg", "report.html", "tile.pyp", "swatch.toml"];
 
 /// Reads, fits, tells and writes.
 pub fn fit(arguments: &Fit) -> Result<(), Failure> {
@@ -70,7 +72,8 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
         let tile = RESULTS[4].to_owned();
         shell.card.yarn = Some(YarnCard { material: found.fit.material, within: found.fit.within, tile });
     }
-    deliver(arguments, &folder, &fabric, &shell, yarn.as_ref())
+    let network = if with_yarn { yarn::fit_contacts(&fabric, &mut shell) } else { None };
+    deliver(arguments, &folder, &fabric, &Fitted { shell, yarn, network })
 }
 
 fn fit_shell(path: &Path, fabric: &FabricFile) -> Result<FabricFit, Failure> {
@@ -87,32 +90,44 @@ fn fit_shell(path: &Path, fabric: &FabricFile) -> Result<FabricFit, Failure> {
 /// A yarn that was fitted, and the tile with its rest shapes.
 struct FittedYarn {
     fit: YarnFit,
-    tile: wale_lab::yarn_tile::YarnTile,
+    tile: YarnTile,
+}
+
+/// What was fitted.
+struct Fitted {
+    shell: FabricFit,
+    yarn: Option<FittedYarn>,
+    /// A scene with the contact model's stiffnesses.
+    network: Option<(Scene, NetworkFit)>,
 }
 
 fn deliver(
     arguments: &Fit,
     folder: &PathBuf,
     fabric: &FabricFile,
-    shell: &FabricFit,
-    yarn: Option<&FittedYarn>,
+    Fitted { shell, yarn, network }: &Fitted,
 ) -> Result<(), Failure> {
     std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
-    let fit = yarn.map(|yarn| &yarn.fit);
+    let fit = yarn.as_ref().map(|yarn| &yarn.fit);
+    let contacts = network.as_ref().map(|(_, fit)| fit);
     let svg = report::plot(fabric, shell, fit).to_svg().map_err(|error| Failure::new(Code::BadInput, error))?;
     write(&folder.join("curves.csv"), report::curves_csv(fabric, shell, fit).as_bytes())?;
     write(&folder.join("curves.svg"), svg.as_bytes())?;
-    write(&folder.join("report.html"), report::page(fabric, shell, fit, &svg).as_bytes())?;
+    write(&folder.join("report.html"), report::page(fabric, &tell::lines(shell, fit, contacts), &svg).as_bytes())?;
     if let Some(yarn) = yarn {
         write(&folder.join("tile.pyp"), write_pattern(&yarn.tile).as_bytes())?;
+    }
+    if let Some((scene, _)) = network {
+        let text = scene.resolved_toml().map_err(|error| Failure::new(Code::Bug, error))?;
+        write(&folder.join("swatch.toml"), text.as_bytes())?;
     }
     // Last: a folder with a card has all the rest.
     write(&folder.join("card.toml"), shell.card.to_toml().as_bytes())?;
     if arguments.json {
-        return output::json(&tell::found_json(folder, shell, fit));
+        return output::json(&tell::found_json(folder, shell, fit, contacts));
     }
     tell::reading(fabric)?;
-    for line in tell::lines(shell, fit) {
+    for line in tell::lines(shell, fit, contacts) {
         say!("{line}")?;
     }
     say!("  {}", folder.join("report.html").display())

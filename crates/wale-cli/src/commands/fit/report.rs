@@ -8,7 +8,7 @@ use wale_lab::fabric_file::FabricFile;
 use wale_lab::fabric_fit::FabricFit;
 use wale_lab::yarn_fit::run::YarnFit;
 
-use super::tell::{degrees, lines};
+use super::tell::degrees;
 
 /// Measured and fitted, point by point.
 pub fn curves_csv(fabric: &FabricFile, found: &FabricFit, yarn: Option<&YarnFit>) -> String {
@@ -91,7 +91,7 @@ pub fn plot(fabric: &FabricFile, found: &FabricFit, yarn: Option<&YarnFit>) -> P
 }
 
 /// One page that needs no other file.
-pub fn page(fabric: &FabricFile, found: &FabricFit, yarn: Option<&YarnFit>, svg: &str) -> String {
+pub fn page(fabric: &FabricFile, lines: &[String], svg: &str) -> String {
     let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
     let title = if fabric.title.is_empty() { "A fabric" } else { &fabric.title };
     let files: Vec<String> = fabric.inputs.iter().map(|path: &PathBuf| escaped(&path.display().to_string())).collect();
@@ -100,7 +100,7 @@ pub fn page(fabric: &FabricFile, found: &FabricFit, yarn: Option<&YarnFit>, svg:
          <style>body{{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}svg{{max-width:100%;height:auto}}</style>\n\
          </head><body>\n<h1>{title}</h1>\n<pre>{}</pre>\n{svg}\n<p>Read from {}. The card is in card.toml, the curves are in curves.csv.</p>\n\
          </body></html>\n",
-        escaped(&lines(found, yarn).join("\n")),
+        escaped(&lines.join("\n")),
         files.join(", "),
         title = escaped(title),
     )

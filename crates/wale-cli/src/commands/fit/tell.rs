@@ -3,9 +3,12 @@
 use std::path::Path;
 
 use serde_json::json;
+use wale::dynamics::tile_stiffness::TileStiffness;
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::fabric_file::FabricFile;
 use wale_lab::fabric_fit::FabricFit;
+use wale_lab::network_fit::NetworkFit;
+use wale_lab::yarn_fit::YarnFitError;
 use wale_lab::yarn_fit::run::YarnFit;
 use wale_lab::yarn_tile::RodParameter;
 
@@ -72,7 +75,12 @@ pub fn read_json(fabric: &FabricFile) -> serde_json::Value {
 }
 
 /// What was found, as JSON.
-pub fn found_json(folder: &Path, found: &FabricFit, yarn: Option<&YarnFit>) -> serde_json::Value {
+pub fn found_json(
+    folder: &Path,
+    found: &FabricFit,
+    yarn: Option<&YarnFit>,
+    contacts: Option<&NetworkFit>,
+) -> serde_json::Value {
     // Infinite factors are no numbers in JSON.
     let factors = |within: &[f64]| within.iter().map(|w| w.is_finite().then_some(*w)).collect::<Vec<Option<f64>>>();
     json!({
@@ -92,12 +100,20 @@ pub fn found_json(folder: &Path, found: &FabricFit, yarn: Option<&YarnFit>) -> s
             "evaluations": yarn.evaluations,
             "open": yarn.open,
         })),
+        "contacts": contacts.map(|contacts| json!({
+            "names": TileStiffness::NAMES,
+            "stiffness_SI": contacts.stiffness,
+            "within": factors(&contacts.within),
+            "error": contacts.error,
+            "undetermined": contacts.undetermined,
+            "at_bound": contacts.at_bound,
+        })),
         "open": found.open,
     })
 }
 
 /// What was found, in lines.
-pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>) -> Vec<String> {
+pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>, contacts: Option<&NetworkFit>) -> Vec<String> {
     let mut lines = vec![format!(
         "thin shell: mean error {:.1} % of force, {:.1} % of compression",
         100.0 * found.membrane.force_error,
@@ -115,13 +131,7 @@ pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>) -> Vec<String> {
         }
     }
     if let Some(yarn) = yarn {
-        let percent = |part: f64| 100.0 * part;
-        lines.push(format!(
-            "yarn: mean error {:.1} % of the stress in comfort, {:.1} % over the whole range, {:.1} % of compression",
-            percent(yarn.error.comfort),
-            percent(yarn.error.full),
-            percent(yarn.error.compression)
-        ));
+        lines.push(format!("yarn in full contact: {}", errors(&yarn.error)));
         let values = yarn.material.parameters();
         for (k, (name, within)) in RodParameter::NAMES.into_iter().zip(yarn.within).enumerate() {
             let (factor, unit) = UNITS[k];
@@ -135,8 +145,27 @@ pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>) -> Vec<String> {
         }
         lines.extend(yarn.open.iter().map(|open| format!("  {open}")));
     }
+    if let Some(contacts) = contacts {
+        lines.push(format!("contact model of scenes: {}", errors(&contacts.error)));
+        for (k, name) in TileStiffness::NAMES.into_iter().enumerate().filter(|(k, _)| contacts.stiffness[*k] > 0.0) {
+            let known = match contacts.within[k] {
+                _ if contacts.at_bound.contains(&name) => "at its bound".to_owned(),
+                within if within > 3.0 => "not determined".to_owned(),
+                within => format!("× or ÷ {within:.2}"),
+            };
+            let (factor, unit) = if k == TileStiffness::Bending as usize { (1e9, "mN mm^2") } else { (1.0, "N") };
+            lines.push(format!("  {name:<9} {:12.5} {unit:<7} {known}", factor * contacts.stiffness[k]));
+        }
+    }
     lines.extend(found.open.iter().map(|open| format!("  {open}")));
     lines
+}
+
+fn errors(error: &YarnFitError) -> String {
+    let [comfort, full, compression] = [error.comfort, error.full, error.compression].map(|part| 100.0 * part);
+    format!(
+        "mean error {comfort:.1} % of the stress in comfort, {full:.1} % over the whole range, {compression:.1} % of compression"
+    )
 }
 
 /// How the numbers of a yarn are shown.

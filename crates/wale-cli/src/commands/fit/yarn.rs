@@ -3,11 +3,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use wale_lab::fabric_file::FabricFile;
+use wale::scene::Scene;
+use wale_lab::fabric_file::{FabricFile, Structure};
 use wale_lab::fabric_fit::FabricFit;
+use wale_lab::network_fit::{NetworkFit, SceneFitError, fit_scene};
 use wale_lab::yarn_fit::gradients::GradientSettings;
 use wale_lab::yarn_fit::journal::{Asked, Journal, JournalError, Recorded, Stopped};
-use wale_lab::yarn_fit::of_fabric::{Ablation, structure_tile, yarn_problem};
+use wale_lab::yarn_fit::of_fabric::{Ablation, structure_tile, uniform_targets, yarn_problem};
 use wale_lab::yarn_fit::problem::{Here, Question, YarnProblem};
 use wale_lab::yarn_fit::run::{Interruptible, Way, fit_yarn};
 use wale_lab::yarn_fit::swarm::SwarmSettings;
@@ -123,6 +125,20 @@ pub fn fit(arguments: &Fit, folder: &Path, problem: &YarnProblem) -> Result<Fitt
         return Err(Failure::new(Code::NotConverged, format_args!("{}: {what}", arguments.fabric.display())));
     };
     Ok(FittedYarn { fit, tile: (*tile).clone() })
+}
+
+/// The contact model of a fabric of which there is a chart; why there is none is left open, in words.
+pub fn fit_contacts(fabric: &FabricFile, shell: &mut FabricFit) -> Option<(Scene, NetworkFit)> {
+    let Some(Structure::Scene(scene)) = &fabric.structure else { return None };
+    let targets = uniform_targets(fabric, shell).ok()?;
+    match fit_scene(scene, &targets) {
+        Ok(found) => Some(found),
+        Err(SceneFitError::NoChart) => None,
+        Err(error) => {
+            shell.open.push(format!("the contact model was not fitted: {error}"));
+            None
+        }
+    }
 }
 
 /// The journal of a problem in a folder.
