@@ -3,7 +3,9 @@
 use std::convert::Infallible;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use wale::pattern::weave::Draft;
+use wale::pattern::Chart;
+use wale::scene::schema::PresetName;
+use wale::scene::{Scene, text_of_preset};
 use wale_lab::shell::StretchCurve;
 use wale_lab::yarn_fit::gradients::GradientSettings;
 use wale_lab::yarn_fit::of_fabric::{Ablation, problem};
@@ -11,29 +13,29 @@ use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, P, Question, YarnPr
 use wale_lab::yarn_fit::run::{Way, YarnFit, fit_yarn};
 use wale_lab::yarn_fit::swarm::SwarmSettings;
 use wale_lab::yarn_fit::{Progress, RodSpace, Target, pull};
-use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, contact_radius, tile_of_draft};
+use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, contact_radius, tile_of_chart};
 
 const STIFFNESS: f64 = 100.0;
 const POINTS: usize = 4;
 
-/// A plain weave, the curves that it makes with known numbers along weft and bias, and these numbers. Bending, contact and what holds
+/// A jersey, the curves that it makes with known numbers along course and wale, and these numbers. Bending, contact and what holds
 /// the yarns are to be found; the rest is held.
 fn known() -> (YarnProblem, [f64; P]) {
-    let radius = 0.25e-3;
-    let tile = tile_of_draft(&Draft::plain(), radius, [1.1e-3, 1.2e-3], [2.0 * radius; 2]).unwrap();
+    let scene = Scene::from_text(&text_of_preset(PresetName::WorstedWool), "preset.toml").unwrap();
+    let tile = tile_of_chart(&Chart::stockinette(), &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
     let mut problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
-    problem.rest = RestShapeSettings { early_rounds: 2, late_rounds: 3, ..problem.rest };
+    problem.rest = RestShapeSettings { late_rounds: 4, ..problem.rest };
     let touching = contact_radius(&problem.tile);
     let bending = 0.05 * 0.25 * STIFFNESS * touching * touching;
     let holding = 1e-2 * bending / touching.powi(4);
     let contact = 0.02 * STIFFNESS / touching;
-    let truth = [20.0, STIFFNESS, 0.02, bending, 1.05 * touching, contact, holding];
+    let truth = [20.0, STIFFNESS, 0.05, bending, 1.05 * touching, contact, holding];
     for held in [RodParameter::SoftStretch, RodParameter::Onset, RodParameter::OuterRadius] {
         problem.space = problem.space.holding(held, truth[held as usize]);
     }
     let rested = problem.rested(&truth).unwrap();
     let material = problem.base.with_parameters(truth);
-    problem.targets = [(0.0, 0.05), (std::f64::consts::FRAC_PI_4, 0.12)]
+    problem.targets = [(0.0, 0.3), (std::f64::consts::FRAC_PI_2, 0.2)]
         .map(|(angle, largest)| {
             let stretches: Vec<f64> = (1..=POINTS).map(|k| largest * k as f64 / POINTS as f64).collect();
             let answers = pull(&rested, &material, angle, &stretches, false, &problem.pull).unwrap();
@@ -57,7 +59,7 @@ fn gradients() -> GradientSettings {
         screening_samples: 2,
         starts: 2,
         evaluations: 10,
-        polish: 8,
+        polish: 4,
         samples: POINTS,
         ..GradientSettings::default()
     }
@@ -68,9 +70,9 @@ fn a_yarn_is_found_again_from_its_curves() {
     let (problem, truth) = known();
     let found = fit(&problem, &Here::new(&problem), &Way::Gradients(gradients())).unwrap();
     let error = found.error;
-    assert!(error.comfort < 0.01 && error.full < 0.01 && error.compression < 0.02, "{error:?}");
+    assert!(error.comfort < 1e-3 && error.full < 1e-3 && error.compression < 1e-3, "{error:?}");
     let bending = found.material.parameters()[RodParameter::Bending as usize] / truth[RodParameter::Bending as usize];
-    assert!((bending - 1.0).abs() < 0.1, "{bending}");
+    assert!((bending - 1.0).abs() < 1e-3, "{bending}");
     assert_eq!(found.within[RodParameter::Onset as usize], 1.0, "it was held");
 }
 

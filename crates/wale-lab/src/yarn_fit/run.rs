@@ -21,8 +21,6 @@ pub enum Way {
     Local(SwarmSettings),
 }
 
-/// Points along each curve that a fit is judged with at its end.
-const SAMPLES: usize = 8;
 /// Part of the width of its bounds within which a coordinate is at one.
 const AT_BOUND: f64 = 1e-3;
 
@@ -74,7 +72,9 @@ fn judge<A: Answers>(
     found: Found,
     progress: &Progress<'_>,
 ) -> Result<Option<YarnFit>, A::Unanswered> {
-    let looked = GradientSettings { evaluations: 1, samples: SAMPLES, ..GradientSettings::default() };
+    // At its own points: what lies between them was not measured.
+    let samples = problem.targets.iter().map(|target| target.points.len()).max().unwrap_or(1);
+    let looked = GradientSettings { evaluations: 1, samples, ..GradientSettings::default() };
     let at = found.coordinates;
     let within = match found.least_squares {
         Some(least_squares) => Some(least_squares.uncertainty),
@@ -85,9 +85,9 @@ fn judge<A: Answers>(
     };
     let within = within.unwrap_or([f64::INFINITY; P]);
     let parameters = RodSpace::parameters(at);
-    let question = Question::of(parameters, SAMPLES, false);
+    let question = Question::of(parameters, samples, false);
     let Some(evaluation) = answers.answer(&question)? else { return Ok(None) };
-    let targets: Vec<Target> = problem.targets.iter().map(|target| target.resampled(SAMPLES)).collect();
+    let targets: Vec<Target> = problem.targets.iter().map(|target| target.resampled(samples)).collect();
     let mut open = Vec::new();
     for (k, [low, high]) in problem.space.coordinate_bounds().into_iter().enumerate() {
         let (name, width) = (RodParameter::NAMES[k], high - low);
