@@ -137,11 +137,14 @@ impl YarnProblem {
     }
 }
 
+/// Tiles with their rest shapes by the bits of their numbers; none where there are none.
+type Rested = HashMap<[u64; P], Option<Arc<YarnTile>>>;
+
 /// A problem that is answered here and now; rest shapes are kept for the next question with the same.
 #[derive(Clone, Debug)]
 pub struct Here<'a> {
     problem: &'a YarnProblem,
-    rested: Arc<Mutex<HashMap<[u64; P], Option<Arc<YarnTile>>>>>,
+    rested: Arc<Mutex<Rested>>,
 }
 
 impl<'a> Here<'a> {
