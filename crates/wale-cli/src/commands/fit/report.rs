@@ -97,7 +97,7 @@ pub fn page(fabric: &FabricFile, lines: &[String], svg: &str) -> String {
     let files: Vec<String> = fabric.inputs.iter().map(|path: &PathBuf| escaped(&path.display().to_string())).collect();
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\n\
-         <style>body{{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}svg{{max-width:100%;height:auto}}</style>\n\
+         <style>body{{font:16px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em}}pre{{white-space:pre-wrap}}svg{{max-width:100%;height:auto}}</style>\n\
          </head><body>\n<h1>{title}</h1>\n<pre>{}</pre>\n{svg}\n<p>Read from {}. The card is in card.toml, the curves are in curves.csv.</p>\n\
          </body></html>\n",
         escaped(&lines.join("\n")),
