@@ -88,7 +88,7 @@ fn a_drape_leaves_a_picture_of_its_sheet() {
 fn bad_input_ends_with_one_error_and_its_mend() {
     let folder = tempfile::tempdir().unwrap();
     let fabric = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette");
-    for name in ["fabric.toml", "course.csv", "wale.csv"] {
+    for name in ["fabric.toml", "stockinette.toml", "course.csv", "wale.csv"] {
         fs::copy(fabric.join(name), folder.path().join(name)).unwrap();
     }
     let fabric = folder.path().join("fabric.toml");
