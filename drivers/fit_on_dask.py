@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fits the yarn of a fabric on the workers of a Dask cluster.
 
-    python drivers/fit_on_dask.py fabrics/acrylic-stockinette/fabric.toml --out /tmp/fit
+    python drivers/fit_on_dask.py fabrics/acrylic-stockinette/fabric.toml --out fit
     python drivers/fit_on_dask.py fabric.toml --scheduler tcp://head:8786 -- --way swarm
 
 `wale fit --ask` says which questions the fit has now, workers answer them with `wale fit --answer`, and `wale fit --tell` takes the

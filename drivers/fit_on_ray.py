@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fits the yarn of a fabric on the workers of a Ray cluster: as `fit_on_dask.py`, which says how.
 
-    python drivers/fit_on_ray.py fabric.toml --out /tmp/fit [--address auto]
+    python drivers/fit_on_ray.py fabric.toml --out fit [--address auto]
 """
 
 import argparse
