@@ -115,6 +115,15 @@ fn a_yarn_is_fitted_the_same_in_one_go_after_a_kill_and_by_answers_from_elsewher
     let other = fit(&out("asked"), &["--without", "phases"], "");
     assert_eq!(other.status.code(), Some(3));
     assert!(said(&other).contains("--force"), "{}", said(&other));
+    // A question for more points than there is room for is refused, not tried.
+    let question = good.split_once(",\"answer\"").unwrap().0;
+    for samples in ["0", "9000000000000000000"] {
+        let (before, after) = question.split_once("\"samples\":").unwrap();
+        let rest = after.trim_start_matches(|c: char| c.is_ascii_digit());
+        let huge = fit(&out("asked"), &["--answer"], &format!("{before}\"samples\":{samples}{rest}}}\n"));
+        assert_eq!(huge.status.code(), Some(3), "{}", said(&huge));
+        assert!(said(&huge).contains("standard input:1: samples is"), "{}", said(&huge));
+    }
     let none = fit(&out("nowhere"), &["--answer"], "");
     assert_eq!(none.status.code(), Some(3));
     assert!(said(&none).contains("--ask"), "{}", said(&none));

@@ -101,7 +101,10 @@ pub fn uniform_targets(fabric: &FabricFile, shell: &FabricFit) -> Result<Vec<Tar
             Ok(StretchPoint { stretch: measured.stretch, force, compression })
         };
         let points = points.iter().map(uniform).collect::<Result<Vec<_>, _>>()?;
-        curves.push((StretchCurve { angle: test.direction, points }, test.curve.compression.is_some()));
+        // A table that never leaves rest has no target.
+        if !points.is_empty() {
+            curves.push((StretchCurve { angle: test.direction, points }, test.curve.compression.is_some()));
+        }
     }
     let largest = curves.iter().flat_map(|(curve, _)| &curve.points).fold(0.0f64, |m, p| m.max(p.force));
     Ok(curves.iter().map(|(curve, compression)| Target::new(curve, *compression, COMFORT * largest)).collect())

@@ -29,6 +29,8 @@ struct Told {
     answer: Option<Evaluation>,
 }
 
+/// Most points a curve that a question may ask for: fits ask for twenty at most.
+const MOST_SAMPLES: usize = 1000;
 /// Lines that are answered together, in parallel.
 const TOGETHER: usize = 64;
 
@@ -55,7 +57,12 @@ pub fn answer(folder: &Path) -> Result<(), Failure> {
         for (index, text) in lines.by_ref().take(TOGETHER) {
             let text = text.map_err(|error| Failure::new(Code::Io, format_args!("standard input: {error}")))?;
             if !text.trim().is_empty() {
-                asked.push(read::<Ask>("standard input", index, &text, &fingerprint, |ask| &ask.problem)?);
+                let ask = read::<Ask>("standard input", index, &text, &fingerprint, |ask| &ask.problem)?;
+                if !(1..=MOST_SAMPLES).contains(&ask.question.samples) {
+                    let what = format!("samples is {}, and should be 1 to {MOST_SAMPLES}", ask.question.samples);
+                    return Err(Failure::new(Code::BadInput, format_args!("standard input:{}: {what}", index + 1)));
+                }
+                asked.push(ask);
             }
         }
         if asked.is_empty() {
