@@ -1,8 +1,10 @@
 //! Yarns fitted to hand-knitted stockinette and garter of one acrylic yarn [Singal2024], and garter foretold from stockinette alone.
 //!
 //! ```text
-//! cargo run --release -p wale-lab --example measured_knits -- [SUMMARY.csv]
+//! cargo run --release -p wale-lab --example measured_knits -- [all|foretell|sizes [SUMMARY.csv]]
 //! ```
+//!
+//! `foretell` leaves out the fit of garter, `sizes` fits nothing and tells how the tiles lie.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -16,15 +18,33 @@ use wale_lab::yarn_fit::of_fabric::{Ablation, yarn_problem};
 use wale_lab::yarn_fit::problem::{Answers, Here, P, Question, YarnProblem};
 use wale_lab::yarn_fit::run::{Way, fit_yarn};
 use wale_lab::yarn_fit::{Progress, Target, YarnFitError, errors};
+use wale_lab::yarn_tile::{YarnTile, contact_radius};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 const POINTS: usize = 8;
-/// Fabrics, with the loop length: twice what the authors give for their cell, which is half a loop.
-const FABRICS: [(&str, &str); 2] = [("stockinette", "22.56 mm"), ("garter", "21.1 mm")];
+/// A swatch of the yarn. Lengths are those with which the authors compute one stitch (`code/fabric_simulations` of
+/// `sabetta/stitch-by-stitch`): the whole of its yarn, and the cell in which it begins. Stockinette of 33 by 33 stitches of that cell is
+/// as large as the swatch was.
+struct Swatch {
+    stitch: &'static str,
+    loop_length: &'static str,
+    spacing: [&'static str; 2],
+}
+
+const FABRICS: [Swatch; 2] = [
+    Swatch { stitch: "stockinette", loop_length: "11.28 mm", spacing: ["2.9 mm", "2.03 mm"] },
+    Swatch { stitch: "garter", loop_length: "10.55 mm", spacing: ["3.2 mm", "1.29 mm"] },
+];
+/// Thickness of the yarn's core, which the authors' yarns are pressed to: 0.65 mm in stockinette, 0.51 mm in garter.
+const DIAMETER: &str = "0.6 mm";
+/// Width of garter pulled along the course \[mm\]. The table's 35.2 mm is less than the 48.4 mm between two pins in it; if its clamps held
+/// as much of it as those of stockinette did, it was 58 mm wide, if it had as many courses as wales, 52 mm.
+const GARTER_WIDTH: f64 = 55.0;
 
 /// A fabric file of the means over the trials, in a folder.
-fn fabric(table: &Path, folder: &Path, stitch: &str, loop_length: &str) -> Result<FabricFile, Failure> {
+fn fabric(table: &Path, folder: &Path, swatch: &Swatch) -> Result<FabricFile, Failure> {
+    let Swatch { stitch, loop_length, spacing: [wales, courses] } = swatch;
     let text = std::fs::read_to_string(table)?;
     let mut rows = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
     let heads = rows.next().ok_or("the table is empty")?;
@@ -33,23 +53,29 @@ fn fabric(table: &Path, folder: &Path, stitch: &str, loop_length: &str) -> Resul
     let (strain, across) = (column("axial_strain_mean")?, column("transverse_strain_mean")?);
     let (width, length) = (column("fabric_width_mm")?, column("initial_clamp_length_mm")?);
     let rows: Vec<Vec<&str>> =
-        rows.filter(|row| row[column("yarn").unwrap_or(0)] == "acrylic" && row[kind] == stitch).collect();
-    let mut file = format!("schema = 1\ntitle = \"Acrylic {stitch}\"\n[structure]\nscene = \"{stitch}-scene.toml\"\n");
+        rows.filter(|row| row[column("yarn").unwrap_or(0)] == "acrylic" && row[kind] == *stitch).collect();
+    let mut file = format!(
+        "schema = 1\ntitle = \"Acrylic {stitch}\"\n[structure]\nscene = \"{stitch}-scene.toml\"\nwale_spacing = \"{wales}\"\n\
+         course_spacing = \"{courses}\"\n"
+    );
     for (letter, name) in [("X", "course"), ("Y", "wale")] {
         let mut curve = "strain,line force (N/mm),transverse strain\n0,0,0\n".to_owned();
-        for row in rows.iter().filter(|row| row[direction] == letter) {
-            let _ = writeln!(curve, "{},{},{}", row[strain], row[force], row[across]);
-        }
         let first = rows.iter().find(|row| row[direction] == letter).ok_or("a direction is missing")?;
+        let told: f64 = first[width].parse()?;
+        let true_width = if *stitch == "garter" && letter == "X" { GARTER_WIDTH } else { told };
+        for row in rows.iter().filter(|row| row[direction] == letter) {
+            let line_force = row[force].parse::<f64>()? * told / true_width;
+            let _ = writeln!(curve, "{},{line_force},{}", row[strain], row[across]);
+        }
         let _ = write!(
             file,
             "[[stretch]]\ndirection = \"{name}\"\nfile = \"{stitch}-{name}.csv\"\nlength = \"{} mm\"\nwidth = \"{} mm\"\n",
-            first[length], first[width]
+            first[length], true_width
         );
         std::fs::write(folder.join(format!("{stitch}-{name}.csv")), curve)?;
     }
     let scene = format!(
-        "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\n[fabric]\nloop_length = \"{loop_length}\"\n\
+        "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\ndiameter = \"{DIAMETER}\"\n[fabric]\nloop_length = \"{loop_length}\"\n\
          [fabric.chart]\npattern = \"{stitch}\"\ncolumns = 8\nrows = 8\n"
     );
     std::fs::write(folder.join(format!("{stitch}-scene.toml")), scene)?;
@@ -84,9 +110,26 @@ fn judge(problem: &YarnProblem, parameters: [f64; P]) -> Option<YarnFitError> {
     Some(errors(&targets, &found.stretch))
 }
 
+/// How the yarns of a tile lie.
+fn describe(tile: &YarnTile) {
+    let heights = tile.vertices().iter().map(|x| x[2]);
+    let thick = heights.clone().fold(f64::NEG_INFINITY, f64::max) - heights.fold(f64::INFINITY, f64::min);
+    let yarn: f64 = tile.lengths().iter().sum();
+    println!(
+        "  tile of {} vertices, {:.2} by {:.2} mm, {:.2} mm from lowest to highest centreline, {:.2} mm of yarn, contact radius {:.3} mm",
+        tile.vertex_count(),
+        1e3 * tile.periods()[0],
+        1e3 * tile.periods()[1],
+        1e3 * thick,
+        1e3 * yarn,
+        1e3 * contact_radius(tile)
+    );
+}
+
 fn main() -> Result<(), Failure> {
     let near = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/knit-tensile-singal2024/summary.csv");
-    let table = std::env::args().nth(1).map_or(near, PathBuf::from);
+    let what = std::env::args().nth(1).unwrap_or_else(|| "all".to_owned());
+    let table = std::env::args().nth(2).map_or(near, PathBuf::from);
     if !table.exists() {
         println!("{} is not there: nothing to fit", table.display());
         return Ok(());
@@ -94,17 +137,22 @@ fn main() -> Result<(), Failure> {
     let folder = tempfile::tempdir()?;
     let problems = FABRICS
         .iter()
-        .map(|(stitch, loop_length)| problem(&fabric(&table, folder.path(), stitch, loop_length)?))
+        .map(|swatch| problem(&fabric(&table, folder.path(), swatch)?))
         .collect::<Result<Vec<_>, Failure>>()?;
     let mut of_stockinette = None;
-    for ((stitch, _), problem) in FABRICS.iter().zip(&problems) {
+    for (k, (swatch, problem)) in FABRICS.iter().zip(&problems).enumerate() {
+        println!("{}", swatch.stitch);
+        describe(&problem.tile);
+        if what == "sizes" || (what == "foretell" && k > 0) {
+            continue;
+        }
         let begun = Instant::now();
         let silent = |_: &wale_lab::yarn_fit::Step| {};
         let way = Way::Gradients(GradientSettings::default());
         let Ok(found) = fit_yarn(problem, &Here::new(problem), &way, &Progress::new(&silent));
         let found = found.ok_or("the tile could not be tested")?;
         let parameters = found.material.parameters();
-        println!("{stitch}, fitted in {:.0} s: {:?}", begun.elapsed().as_secs_f64(), found.error);
+        println!("  fitted in {:.0} s: {:?}", begun.elapsed().as_secs_f64(), found.error);
         println!("  {parameters:?}\n  {}", found.open.join("; "));
         judge(problem, parameters);
         of_stockinette.get_or_insert(parameters);

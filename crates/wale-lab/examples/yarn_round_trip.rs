@@ -46,27 +46,45 @@ fn interlock() -> Result<Chart, Failure> {
     Ok(Chart::new(courses)?)
 }
 
-/// A fabric: its name, its tile, and how far it is pulled along weft, bias and warp.
-type Fabric = (&'static str, Result<YarnTile, Failure>, [f64; 3]);
+/// A fabric of which curves are made.
+struct Fabric {
+    name: &'static str,
+    tile: Result<YarnTile, Failure>,
+    /// How far it is pulled along weft, bias and warp \[–\].
+    largest: [f64; 3],
+    /// Its yarn: `k_b` in that of a solid rod as stiff in stretch, and `k_h` in `k_b/R⁴`.
+    bending: f64,
+    holding: f64,
+}
 
 fn fabrics() -> Result<Vec<Fabric>, Failure> {
+    // Fibres slide past each other in a yarn, so that it bends far more easily than a rod. What holds it lies between nothing and the
+    // sevenfold of these that acrylic stockinette is fitted with.
+    let knitted =
+        |name, chart: &Chart, largest| Fabric { name, tile: knit(chart), largest, bending: 0.05, holding: 0.1 };
+    // Firm yarns in a firm weave: of softer ones the tile balances on a ridge, from which its threads snap to one side.
+    let woven = |name, draft: &Draft| Fabric {
+        name,
+        tile: weave(draft),
+        largest: [0.03, 0.1, 0.03],
+        bending: 0.5,
+        holding: 0.4,
+    };
     Ok(vec![
-        ("jersey", knit(&Chart::stockinette()), [0.45, 0.35, 0.3]),
-        ("garter", knit(&Chart::garter()), [0.4, 0.35, 0.4]),
-        ("rib", knit(&Chart::rib(1, 1)?), [0.5, 0.35, 0.25]),
-        ("interlock", knit(&interlock()?), [0.3, 0.25, 0.2]),
-        ("plain", weave(&Draft::plain()), [0.06, 0.2, 0.06]),
-        ("twill", weave(&Draft::twill(2, 2)?), [0.06, 0.2, 0.06]),
+        knitted("jersey", &Chart::stockinette(), [0.45, 0.35, 0.3]),
+        knitted("garter", &Chart::garter(), [0.4, 0.35, 0.4]),
+        knitted("rib", &Chart::rib(1, 1)?, [0.5, 0.35, 0.25]),
+        knitted("interlock", &interlock()?, [0.3, 0.25, 0.2]),
+        woven("plain", &Draft::plain()),
+        woven("twill", &Draft::twill(2, 1)?),
     ])
 }
 
-/// A yarn in the middle of the bounds, but not quite: what is to be found.
-fn truth(tile: &YarnTile, base: &RodMaterial) -> RodMaterial {
+/// A yarn within the bounds, but not in their middle: what is to be found.
+fn truth(fabric: &Fabric, tile: &YarnTile, base: &RodMaterial) -> RodMaterial {
     let radius = contact_radius(tile);
-    let bending = 0.05 * 0.25 * STIFFNESS * radius * radius;
-    // Between nothing and the seven of these that acrylic stockinette is fitted with; yarns that are held by 0.003 snap from place to
-    // place, and a fit ends some per cent beside them.
-    let holding = 0.1 * bending / radius.powi(4);
+    let bending = fabric.bending * 0.25 * STIFFNESS * radius * radius;
+    let holding = fabric.holding * bending / radius.powi(4);
     base.with_parameters([8.0, STIFFNESS, 0.05, bending, 1.05 * radius, 0.05 * STIFFNESS / radius, holding])
 }
 
@@ -86,20 +104,21 @@ fn curves(problem: &YarnProblem, material: &RodMaterial, largest: [f64; 3]) -> R
 fn main() -> Result<(), Failure> {
     let only = std::env::args().nth(1);
     println!("fabric     vertices  comfort    full  compression  evaluations  seconds  parameters found over true");
-    for (name, tile, largest) in fabrics()? {
+    for fabric in fabrics()? {
+        let name = fabric.name;
         if only.as_ref().is_some_and(|only| only != name) {
             continue;
         }
-        let tile = match tile {
-            Ok(tile) => tile,
+        let tile = match &fabric.tile {
+            Ok(tile) => tile.clone(),
             Err(error) => {
                 println!("{name:<10} no tile: {error}");
                 continue;
             }
         };
         let mut problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
-        let material = truth(&problem.tile, &problem.base);
-        problem.targets = match curves(&problem, &material, largest) {
+        let material = truth(&fabric, &problem.tile, &problem.base);
+        problem.targets = match curves(&problem, &material, fabric.largest) {
             Ok(targets) => targets,
             Err(error) => {
                 println!("{name:<10} no curves: {error}");
@@ -108,7 +127,7 @@ fn main() -> Result<(), Failure> {
         };
         let begun = Instant::now();
         let silent = |_: &wale_lab::yarn_fit::Step| {};
-        let way = Way::Gradients(GradientSettings { samples: POINTS, ..GradientSettings::default() });
+        let way = Way::Gradients(GradientSettings::default());
         let Ok(found) = fit_yarn(&problem, &Here::new(&problem), &way, &Progress::new(&silent));
         let Some(found) = found else {
             println!("{name:<10} could not be tested");

@@ -9,6 +9,17 @@ use super::space::RodSpace;
 use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
 use crate::yarn_tile::RodParameter;
 
+/// Least squares from the best places that are known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Round {
+    /// How many of them.
+    pub starts: usize,
+    /// Steps from each, those that were not taken too.
+    pub evaluations: usize,
+    /// Points along each curve.
+    pub samples: usize,
+}
+
 /// How a fit by gradients is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GradientSettings {
@@ -16,27 +27,19 @@ pub struct GradientSettings {
     pub screened: usize,
     /// Points along each curve then.
     pub screening_samples: usize,
-    /// How many of the best are improved.
-    pub starts: usize,
-    /// Steps of least squares from each, those that were not taken too.
-    pub evaluations: usize,
-    /// Steps more from where the best of them has come to.
-    pub polish: usize,
-    /// Points along each curve then.
-    pub samples: usize,
+    /// Rounds of improving, each from the best of the one before: many for a few steps, then few for many. One of no start is left out.
+    pub rounds: [Round; 3],
     /// Noise of the data that intervals reckon with even where the fit is closer \[–\].
     pub least_noise: f64,
 }
 
 impl Default for GradientSettings {
     fn default() -> Self {
+        let round = |starts, evaluations, samples| Round { starts, evaluations, samples };
         Self {
-            screened: 32,
+            screened: 48,
             screening_samples: 3,
-            starts: 3,
-            evaluations: 14,
-            polish: 24,
-            samples: 8,
+            rounds: [round(8, 5, 4), round(3, 8, 4), round(2, 20, 8)],
             least_noise: 0.01,
         }
     }
@@ -46,7 +49,8 @@ impl GradientSettings {
     /// A first look, in a tenth of the time.
     #[must_use]
     pub fn quick() -> Self {
-        Self { screened: 8, starts: 1, evaluations: 5, polish: 3, samples: 5, ..Self::default() }
+        let round = |starts, evaluations, samples| Round { starts, evaluations, samples };
+        Self { screened: 8, rounds: [round(1, 3, 4), round(1, 4, 5), round(0, 0, 0)], ..Self::default() }
     }
 }
 
@@ -62,14 +66,17 @@ pub struct Found {
 }
 
 /// Parts of the onset from which the best place is improved once more.
-const EARLIER: [f64; 3] = [1.0, 0.4, 0.1];
+const EARLIER: [f64; 2] = [0.4, 0.1];
 /// Change of a coordinate by which the rest shapes' part of a derivative is found.
 const DIFFERENCE: f64 = 1e-2;
+/// Places that are nearer than this in every coordinate are one.
+const SAME: f64 = 0.02;
 
 /// Fits by gradients. `None` if the tile could not be tested anywhere.
 ///
-/// Differs from the paper: there a swarm looks for the valley and COBYLA, which knows no derivatives, goes down it. Rest shapes are
-/// found anew for every place, as there; with them held, derivatives are exact, and what a number does by way of the rest shapes is
+/// Differs from the paper: there a swarm looks for the valley and COBYLA, which knows no derivatives, goes down it. Valleys are many here,
+/// and how deep one is shows only a few steps down, so that many are followed for a few steps and few for many. Rest shapes are found
+/// anew for every place, as in the paper; with them held, derivatives are exact, and what a number does by way of the rest shapes is
 /// found by differences. Test: `tests/yarn_fits.rs`.
 ///
 /// # Errors
@@ -90,31 +97,54 @@ pub fn fit_by_gradients<A: Answers>(
     let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problem.space.at_parts(halton(k))).collect();
     let looked: Vec<Result<Option<f64>, A::Unanswered>> = places.par_iter().map(cost).collect();
     let looked: Vec<Option<f64>> = looked.into_iter().collect::<Result<_, _>>()?;
-    let mut order: Vec<(f64, usize)> = looked.iter().enumerate().filter_map(|(k, c)| Some(((*c)?, k))).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let improved: Vec<Result<Option<Found>, A::Unanswered>> = order
-        .par_iter()
-        .take(settings.starts)
-        .map(|&(_, k)| improve(problem, answers, places[k], settings, progress))
-        .collect();
-    let improved: Vec<Option<Found>> = improved.into_iter().collect::<Result<_, _>>()?;
-    let best = improved.into_iter().flatten().reduce(|best, next| if next.cost < best.cost { next } else { best });
-    let Some(best) = best else { return Ok(None) };
-    let polish = GradientSettings { evaluations: settings.polish, ..*settings };
-    // An onset beyond what the yarns are stretched by is felt by nothing, and least squares does not come back from there.
+    let seen = places.into_iter().zip(looked);
+    let mut known: Vec<Found> =
+        seen.filter_map(|(coordinates, cost)| Some(Found { coordinates, cost: cost?, least_squares: None })).collect();
+    best_first(&mut known);
+    for (k, round) in settings.rounds.iter().enumerate().filter(|(_, round)| round.starts > 0) {
+        let mut from: Vec<[f64; P]> = known.iter().take(round.starts).map(|found| found.coordinates).collect();
+        if let (Some(best), true) = (known.first(), k > 0 && known[0].least_squares.is_some()) {
+            from.extend(with_earlier_onsets(problem, &best.coordinates));
+        }
+        let improved: Vec<Result<Option<Found>, A::Unanswered>> = from
+            .par_iter()
+            .map(|&from| improve(problem, answers, from, round, settings.least_noise, progress))
+            .collect();
+        let mut improved: Vec<Found> =
+            improved.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+        // What was found with fewer points along the curves is no longer known where more are wanted.
+        if !improved.is_empty() {
+            best_first(&mut improved);
+            known = improved;
+        }
+    }
+    Ok(known.into_iter().next())
+}
+
+/// Puts the least cost first, the earlier where two are equal, and leaves out what is the same place as a better one.
+fn best_first(known: &mut Vec<Found>) {
+    known.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut kept: Vec<Found> = Vec::with_capacity(known.len());
+    for found in known.drain(..) {
+        let near = |other: &Found| other.coordinates.iter().zip(&found.coordinates).all(|(a, b)| (a - b).abs() < SAME);
+        if !kept.iter().any(near) {
+            kept.push(found);
+        }
+    }
+    *known = kept;
+}
+
+/// The same place with smaller onsets: one beyond what the yarns are stretched by is felt by nothing, and least squares does not come
+/// back from there.
+fn with_earlier_onsets(problem: &YarnProblem, place: &[f64; P]) -> Vec<[f64; P]> {
     let onset = RodParameter::Onset as usize;
     let [low, high] = problem.space.coordinate_bounds()[onset];
     let earlier = |part: f64| {
-        let mut from = best.coordinates;
+        let mut from = *place;
         from[onset] = low + part * (from[onset] - low);
         from
     };
-    let parts: &[f64] = if low < high { &EARLIER } else { &EARLIER[..1] };
-    let polished: Vec<Result<Option<Found>, A::Unanswered>> =
-        parts.par_iter().map(|&part| improve(problem, answers, earlier(part), &polish, progress)).collect();
-    let polished: Vec<Option<Found>> = polished.into_iter().collect::<Result<_, _>>()?;
-    let all = polished.into_iter().flatten();
-    Ok(Some(all.fold(best, |best, next| if next.cost < best.cost { next } else { best })))
+    if low < high { EARLIER.map(earlier).to_vec() } else { Vec::new() }
 }
 
 /// Least squares from one place.
@@ -125,12 +155,13 @@ pub fn improve<A: Answers>(
     problem: &YarnProblem,
     answers: &A,
     from: [f64; P],
-    settings: &GradientSettings,
+    round: &Round,
+    least_noise: f64,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
     let evaluate = |coordinates: &[f64; P], slopes: bool| {
         let at = RodSpace::parameters(*coordinates);
-        let question = Question::of(at, settings.samples, slopes);
+        let question = Question::of(at, round.samples, slopes);
         let residuals = answers.answer(&question)?.map(|found| problem.residuals(&question, &found));
         progress.tell(residuals.as_ref().map(Residuals::cost), &at);
         let Some(mut residuals) = residuals else { return Ok(None) };
@@ -140,8 +171,7 @@ pub fn improve<A: Answers>(
         Ok(Some(residuals))
     };
     let bounds = problem.space.coordinate_bounds();
-    let (max_evaluations, least_noise) = (settings.evaluations, settings.least_noise);
-    let search = LeastSquaresSettings { max_evaluations, bounds, least_noise };
+    let search = LeastSquaresSettings { max_evaluations: round.evaluations, bounds, least_noise };
     let found = fit(evaluate, &[from], &search)?;
     Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
 }

@@ -16,8 +16,8 @@ use crate::fabric_fit::FabricFit;
 use crate::shell::uniform::uniform_stretch;
 use crate::shell::{ShellError, StretchCurve, StretchPoint};
 use crate::yarn_tile::{
-    PatternFileError, RestShapeSettings, RodMaterial, RodParameter, StructureError, YarnTile, contact_radius,
-    read_pattern, tile_of_chart, tile_of_draft,
+    PatternFileError, RestShapeSettings, RodMaterial, RodParameter, StructureError, TileError, YarnTile,
+    contact_radius, read_pattern, tile_of_chart, tile_of_draft,
 };
 
 /// What of the paper's model is left out, to see what it is for [Sperl2022, Figs. 16 to 18].
@@ -53,6 +53,9 @@ pub enum YarnProblemError {
     /// The chart or draft is no tile.
     #[error("the structure's scene: {0}")]
     Structure(#[from] StructureError),
+    /// It cannot be brought to the spacings of the file.
+    #[error("the tile does not come to rest with the spacings under [structure]: {0}; give others, or leave them out")]
+    Spacing(#[from] TileError),
     /// The structure is neither a chart nor a draft.
     #[error("the structure's scene has neither a chart nor a draft that repeats; give the tile as a .pyp file")]
     NoRepeat,
@@ -127,7 +130,7 @@ pub fn structure_tile(fabric: &FabricFile) -> Result<YarnTile, YarnProblemError>
                 let repeat = chart.smallest_repeat();
                 let counts = [repeat.column_count(), repeat.row_count()].map(|count| count as f64);
                 let asked = |axis: usize| fabric.spacing[axis].map_or(tile.periods()[axis], |s| s * counts[axis]);
-                return Ok(tile.with_periods([asked(0), asked(1)]));
+                return Ok(tile.pushed_to([asked(0), asked(1)])?);
             }
             let (Some(woven), Some(card)) = (scene.structure.woven(), scene.fabric.woven()) else {
                 return Err(YarnProblemError::NoRepeat);

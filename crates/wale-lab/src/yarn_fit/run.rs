@@ -1,6 +1,6 @@
 //! A yarn fitted from the beginning to the end, by whichever way.
 
-use super::gradients::{Found, GradientSettings, fit_by_gradients, improve};
+use super::gradients::{Found, GradientSettings, Round, fit_by_gradients, improve};
 use super::journal::Stopped;
 use super::objective::{YarnFitError, errors};
 use super::problem::{Answers, Evaluation, P, Question, YarnProblem};
@@ -74,12 +74,13 @@ fn judge<A: Answers>(
 ) -> Result<Option<YarnFit>, A::Unanswered> {
     // At its own points: what lies between them was not measured.
     let samples = problem.targets.iter().map(|target| target.points.len()).max().unwrap_or(1);
-    let looked = GradientSettings { evaluations: 1, samples, ..GradientSettings::default() };
+    let looked = Round { starts: 1, evaluations: 1, samples };
+    let least_noise = GradientSettings::default().least_noise;
     let at = found.coordinates;
     let within = match found.least_squares {
         Some(least_squares) => Some(least_squares.uncertainty),
         None => {
-            let once = improve(problem, answers, at, &looked, progress)?;
+            let once = improve(problem, answers, at, &looked, least_noise, progress)?;
             once.and_then(|found| found.least_squares).map(|least_squares| least_squares.uncertainty)
         }
     };

@@ -10,6 +10,7 @@ mod neighbours;
 mod of_structure;
 mod path;
 mod pattern_file;
+mod resized;
 mod rest_shape;
 mod sensitivity;
 mod stress;
