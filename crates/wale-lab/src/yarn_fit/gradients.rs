@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::problem::{Answers, P, Question, YarnProblem};
+use super::problem::{Answers, P, Question, YarnProblem, ask_all};
 use super::progress::Progress;
 use super::sequence::halton;
 use super::space::RodSpace;
@@ -66,7 +66,7 @@ const EARLIER: [f64; 3] = [1.0, 0.4, 0.1];
 /// Change of a coordinate by which the rest shapes' part of a derivative is found.
 const DIFFERENCE: f64 = 1e-2;
 
-/// Fits by gradients. `None` if the tile could not be tested anywhere.
+/// Fits fabrics of one yarn by gradients. `None` if they could not all be tested anywhere.
 ///
 /// Differs from the paper: there a swarm looks for the valley and COBYLA, which knows no derivatives, goes down it. Rest shapes are
 /// found anew for every place, as there; with them held, derivatives are exact, and what a number does by way of the rest shapes is
@@ -75,19 +75,18 @@ const DIFFERENCE: f64 = 1e-2;
 /// # Errors
 /// If a question is not answered now.
 pub fn fit_by_gradients<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     settings: &GradientSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
     let cost = |coordinates: &[f64; P]| -> Result<Option<f64>, A::Unanswered> {
         let question = Question::of(RodSpace::parameters(*coordinates), settings.screening_samples, false);
-        let found = answers.answer(&question)?;
-        let cost = found.map(|found| problem.residuals(&question, &found).cost());
+        let cost = ask_all(problems, answers, &question)?.map(|residuals| residuals.cost());
         progress.tell(cost, &question.at);
         Ok(cost.filter(|cost| cost.is_finite()))
     };
-    let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problem.space.at_parts(halton(k))).collect();
+    let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problems[0].space.at_parts(halton(k))).collect();
     let looked: Vec<Result<Option<f64>, A::Unanswered>> = places.par_iter().map(cost).collect();
     let looked: Vec<Option<f64>> = looked.into_iter().collect::<Result<_, _>>()?;
     let mut order: Vec<(f64, usize)> = looked.iter().enumerate().filter_map(|(k, c)| Some(((*c)?, k))).collect();
@@ -95,7 +94,7 @@ pub fn fit_by_gradients<A: Answers>(
     let improved: Vec<Result<Option<Found>, A::Unanswered>> = order
         .par_iter()
         .take(settings.starts)
-        .map(|&(_, k)| improve(problem, answers, places[k], settings, progress))
+        .map(|&(_, k)| improve(problems, answers, places[k], settings, progress))
         .collect();
     let improved: Vec<Option<Found>> = improved.into_iter().collect::<Result<_, _>>()?;
     let best = improved.into_iter().flatten().reduce(|best, next| if next.cost < best.cost { next } else { best });
@@ -103,7 +102,7 @@ pub fn fit_by_gradients<A: Answers>(
     let polish = GradientSettings { evaluations: settings.polish, ..*settings };
     // An onset beyond what the yarns are stretched by is felt by nothing, and least squares does not come back from there.
     let onset = RodParameter::Onset as usize;
-    let [low, high] = problem.space.coordinate_bounds()[onset];
+    let [low, high] = problems[0].space.coordinate_bounds()[onset];
     let earlier = |part: f64| {
         let mut from = best.coordinates;
         from[onset] = low + part * (from[onset] - low);
@@ -111,7 +110,7 @@ pub fn fit_by_gradients<A: Answers>(
     };
     let parts: &[f64] = if low < high { &EARLIER } else { &EARLIER[..1] };
     let polished: Vec<Result<Option<Found>, A::Unanswered>> =
-        parts.par_iter().map(|&part| improve(problem, answers, earlier(part), &polish, progress)).collect();
+        parts.par_iter().map(|&part| improve(problems, answers, earlier(part), &polish, progress)).collect();
     let polished: Vec<Option<Found>> = polished.into_iter().collect::<Result<_, _>>()?;
     let all = polished.into_iter().flatten();
     Ok(Some(all.fold(best, |best, next| if next.cost < best.cost { next } else { best })))
@@ -122,7 +121,7 @@ pub fn fit_by_gradients<A: Answers>(
 /// # Errors
 /// As [`fit_by_gradients`].
 pub fn improve<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     from: [f64; P],
     settings: &GradientSettings,
@@ -131,15 +130,15 @@ pub fn improve<A: Answers>(
     let evaluate = |coordinates: &[f64; P], slopes: bool| {
         let at = RodSpace::parameters(*coordinates);
         let question = Question::of(at, settings.samples, slopes);
-        let residuals = answers.answer(&question)?.map(|found| problem.residuals(&question, &found));
+        let residuals = ask_all(problems, answers, &question)?;
         progress.tell(residuals.as_ref().map(Residuals::cost), &at);
         let Some(mut residuals) = residuals else { return Ok(None) };
-        if slopes && problem.rest_shapes {
-            add_slopes_of_rest(problem, answers, coordinates, &question, &mut residuals)?;
+        if slopes && problems[0].rest_shapes {
+            add_slopes_of_rest(problems, answers, coordinates, &question, &mut residuals)?;
         }
         Ok(Some(residuals))
     };
-    let bounds = problem.space.coordinate_bounds();
+    let bounds = problems[0].space.coordinate_bounds();
     let (max_evaluations, least_noise) = (settings.evaluations, settings.least_noise);
     let search = LeastSquaresSettings { max_evaluations, bounds, least_noise };
     let found = fit(evaluate, &[from], &search)?;
@@ -149,13 +148,13 @@ pub fn improve<A: Answers>(
 /// Adds what each number does to the residuals by way of the rest shapes: they are found with a number that differs a little, and
 /// pulled with the one that does not.
 fn add_slopes_of_rest<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     coordinates: &[f64; P],
     question: &Question,
     residuals: &mut Residuals<P>,
 ) -> Result<(), A::Unanswered> {
-    let bounds = problem.space.coordinate_bounds();
+    let bounds = problems[0].space.coordinate_bounds();
     // Yarns at rest are stretched by too little for an onset to matter.
     let free = (0..P).filter(|&k| bounds[k][0] < bounds[k][1] && k != RodParameter::Onset as usize);
     let moved: Vec<(usize, f64, Question)> = free
@@ -166,10 +165,8 @@ fn add_slopes_of_rest<A: Answers>(
             (k, step, Question { rest: RodSpace::parameters(near), slopes: false, ..*question })
         })
         .collect();
-    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> = moved
-        .par_iter()
-        .map(|(_, _, asked)| Ok(answers.answer(asked)?.map(|found| problem.residuals(asked, &found))))
-        .collect();
+    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> =
+        moved.par_iter().map(|(_, _, asked)| ask_all(problems, answers, asked)).collect();
     for ((k, step, _), found) in moved.iter().zip(found) {
         // Where the tile cannot be tested with those, they are taken not to matter.
         let Some(found) = found? else { continue };

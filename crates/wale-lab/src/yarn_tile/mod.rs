@@ -12,6 +12,7 @@ mod path;
 mod pattern_file;
 mod rest_shape;
 mod sensitivity;
+mod soundness;
 mod stress;
 mod system;
 #[cfg(test)]
@@ -27,5 +28,6 @@ pub use of_structure::{StructureError, tile_of_chart, tile_of_draft};
 pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
 pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
 pub use sensitivity::{BendingAnswer, EquilibriumSlopes, RodParameter, bending_answer};
+pub use soundness::{Unsound, unsound};
 pub use stress::{CoarseStress, bending_stiffness};
 pub use tile::{Edge, TileFault, YarnTile};
