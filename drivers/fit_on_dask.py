@@ -7,7 +7,7 @@
 `wale fit --ask` says which questions the fit has now, workers answer them with `wale fit --answer`, and `wale fit --tell` takes the
 answers, until there are no more questions. The program `wale` must be on every worker; nothing else is: the problem travels with the
 questions. A worker that is lost loses its question alone, which is asked again; an answer that comes twice is taken once.
-Everything after `--` goes to `wale fit`. Needs `dask` and `distributed`.
+Everything after `--` goes to `wale fit`: options, and other fabrics of the same yarn. Needs `dask` and `distributed`.
 """
 
 import argparse

@@ -1,31 +1,17 @@
 //! The fit of a yarn from the program: killed and gone on with, answered elsewhere, and what it says of bad answers.
 
-use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+mod fits;
 
-fn fabric() -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette/fabric.toml");
-    path.to_str().unwrap().to_owned()
-}
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use fits::{acrylic, said};
 
 /// `wale fit` of the fabric into a folder, quickly, with a text for its standard input.
 fn fit(out: &Path, arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_wale"))
-        .args(["fit", &fabric(), "--quick", "--out", out.to_str().unwrap()])
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
-    child.wait_with_output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
+    let fabric = acrylic().join("fabric.toml");
+    fits::fit(&[&fabric], &[&["--out", out.to_str().unwrap()], arguments].concat(), input)
 }
 
 #[test]

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::fit_fabric;
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::of_fabric::fit_shell;
 use wale_lab::yarn_fit::gradients::GradientSettings;
 use wale_lab::yarn_fit::of_fabric::{Ablation, yarn_problem};
 use wale_lab::yarn_fit::problem::{Answers, Here, P, Question, YarnProblem};
@@ -86,7 +86,7 @@ fn fabric(table: &Path, folder: &Path, swatch: &Swatch) -> Result<FabricFile, Fa
 
 fn problem(fabric: &FabricFile) -> Result<YarnProblem, Failure> {
     let settings = MembraneFitSettings { targets: POINTS, ..MembraneFitSettings::default() };
-    Ok(yarn_problem(fabric, &fit_fabric(fabric, &settings)?, Ablation::default())?)
+    Ok(yarn_problem(fabric, &fit_shell(fabric, &settings)?, Ablation::default())?)
 }
 
 /// What a tile does with a yarn, and how far that is from the targets.

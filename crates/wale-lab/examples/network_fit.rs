@@ -9,9 +9,9 @@ use wale::dynamics::tile_stiffness::TileStiffness;
 use wale::pattern::{Chart, knit};
 use wale::scene::Scene;
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::fit_fabric;
 use wale_lab::network_fit::{NetworkFit, NetworkFitSettings, fit_network};
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::of_fabric::fit_shell;
 use wale_lab::yarn_fit::Target;
 use wale_lab::yarn_fit::of_fabric::uniform_targets;
 
@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let loop_length = std::env::args().nth(2).unwrap_or_else(|| "22.56".to_owned());
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette/fabric.toml");
     let fabric = FabricFile::read(&folder)?;
-    let targets = uniform_targets(&fabric, &fit_fabric(&fabric, &MembraneFitSettings::default())?)?;
+    let targets = uniform_targets(&fabric, &fit_shell(&fabric, &MembraneFitSettings::default())?)?;
     let scene = format!(
         "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\n[fabric]\nloop_length = \"{loop_length} mm\"\ncontacts = \"{contacts}\"\n\
          [fabric.chart]\npattern = \"stockinette\"\ncolumns = 1\nrows = 1\n"

@@ -4,10 +4,10 @@
 pub mod card_file;
 pub mod curve;
 pub mod fabric_file;
-pub mod fabric_fit;
 pub mod least_squares;
 pub mod network_fit;
 pub mod register;
+pub mod report;
 pub mod shell;
 pub mod virtual_test;
 pub mod yarn_fit;

@@ -8,12 +8,12 @@ use wale::scene::schema::PresetName;
 use wale::scene::{Scene, text_of_preset};
 use wale_lab::shell::StretchCurve;
 use wale_lab::yarn_fit::gradients::{GradientSettings, Round, improve};
-use wale_lab::yarn_fit::of_fabric::{Ablation, problem};
+use wale_lab::yarn_fit::of_fabric::{Ablation, Part, problem, problems};
 use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, P, Question, YarnProblem};
-use wale_lab::yarn_fit::run::{Way, YarnFit, fit_yarn};
+use wale_lab::yarn_fit::run::{Way, YarnFit, fit_together, fit_yarn};
 use wale_lab::yarn_fit::swarm::SwarmSettings;
 use wale_lab::yarn_fit::{Progress, RodSpace, Target, pull};
-use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, contact_radius, tile_of_chart};
+use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, YarnTile, contact_radius, tile_of_chart};
 
 const STIFFNESS: f64 = 100.0;
 const POINTS: usize = 4;
@@ -45,6 +45,59 @@ fn known() -> (YarnProblem, [f64; P]) {
         })
         .into();
     (problem, truth)
+}
+
+/// The same yarn in a jersey and in a garter, each with the curve that it makes along its courses.
+fn known_pair() -> (Vec<YarnProblem>, [f64; P]) {
+    let (jersey, truth) = known();
+    let scene = Scene::from_text(&text_of_preset(PresetName::WorstedWool), "preset.toml").unwrap();
+    let garter = tile_of_chart(&Chart::garter(), &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
+    let part = |tile: YarnTile| Part { tile, targets: Vec::new(), bending: Vec::new() };
+    let parts = vec![part(jersey.tile.clone()), part(garter)];
+    let mut problems = problems(parts, Some(STIFFNESS), Ablation::default());
+    assert_eq!((problems[0].base, problems[0].space), (problems[1].base, problems[1].space));
+    for problem in &mut problems {
+        problem.rest = jersey.rest;
+        problem.space = jersey.space;
+        let rested = problem.rested(&truth).unwrap();
+        let material = problem.base.with_parameters(truth);
+        let answers = pull(&rested, &material, 0.0, &[0.08, 0.16], false, &problem.pull).unwrap();
+        let points: Vec<_> = answers.iter().map(|answer| answer.point).collect();
+        let comfort = 0.4 * points[1].force;
+        problem.targets = vec![Target::new(&StretchCurve { angle: 0.0, points }, true, comfort)];
+    }
+    (problems, truth)
+}
+
+#[test]
+fn one_yarn_is_fitted_to_two_fabrics_at_once() {
+    let (problems, truth) = known_pair();
+    let round = |evaluations| Round { starts: 1, evaluations, samples: 2 };
+    let rounds = [round(10), round(3), Round { starts: 0, ..round(0) }];
+    let settings = GradientSettings { screened: 6, rounds, ..GradientSettings::default() };
+    let silent = |_: &wale_lab::yarn_fit::Step| {};
+    let here = Here::of(&problems);
+    let Ok(fits) = fit_together(&problems, &here, &Way::Gradients(settings), &Progress::new(&silent));
+    let fits = fits.unwrap();
+    assert_eq!(fits.len(), 2);
+    assert_eq!((fits[0].material, fits[0].cost), (fits[1].material, fits[1].cost), "it is one yarn");
+    // The sum that was made small is that of both.
+    let at = fits[0].material.parameters();
+    let costs = [0, 1].map(|fabric| {
+        let question = Question { fabric, ..Question::of(at, 2, false) };
+        let Ok(found) = here.answer(&question);
+        problems[fabric].residuals(&question, &found.unwrap()).cost()
+    });
+    assert!((costs[0] + costs[1] - fits[0].cost).abs() <= 1e-9 * fits[0].cost.max(1e-12), "{costs:?} {}", fits[0].cost);
+    for fit in &fits {
+        let error = fit.error;
+        assert!(error.comfort < 1e-2 && error.full < 1e-2 && error.compression < 1e-2, "{error:?}");
+    }
+    let k = RodParameter::Bending as usize;
+    assert!((at[k] / truth[k] - 1.0).abs() < 0.05, "{at:?}");
+    // Of a fabric that is not there nothing is known.
+    let Ok(none) = here.answer(&Question { fabric: 2, ..Question::of(at, 2, false) });
+    assert!(none.is_none());
 }
 
 fn fit<A: Answers<Unanswered = Infallible>>(problem: &YarnProblem, answers: &A, way: &Way) -> Option<YarnFit> {
@@ -90,12 +143,30 @@ fn all_numbers_that_the_curves_feel_are_found_again_from_near() {
     let silent = |_: &wale_lab::yarn_fit::Step| {};
     let here = Here::new(&problem);
     let round = Round { starts: 1, evaluations: 9, samples: POINTS };
-    let Ok(found) = improve(&problem, &here, from, &round, 0.01, &Progress::new(&silent));
+    let Ok(found) = improve(std::slice::from_ref(&problem), &here, from, &round, 0.01, &Progress::new(&silent));
     let found = found.unwrap();
     let start = found.least_squares.as_ref().unwrap().start_cost;
     assert!(start > 1e-3 && found.cost < 1e-6, "{start} {}", found.cost);
     for (k, (found, truth)) in RodSpace::parameters(found.coordinates).iter().zip(truth).enumerate() {
         assert!((found / truth - 1.0).abs() < 0.02, "{}: {found} {truth}", RodParameter::NAMES[k]);
+    }
+}
+
+#[test]
+fn a_number_that_ends_at_its_bound_is_said_to() {
+    let (problem, truth) = known();
+    let k = RodParameter::Bending as usize;
+    // The yarn that made the curves lies below these bounds, then above.
+    for (bounds, says) in [([3.0, 30.0], "k_b is at its lower bound"), ([0.01, 0.3], "k_b is at its upper bound")] {
+        let space = problem.space.within(RodParameter::Bending, bounds.map(|factor| factor * truth[k]));
+        let held = [RodParameter::OuterContact, RodParameter::Holding];
+        let space = held.into_iter().fold(space, |space, held| space.holding(held, truth[held as usize]));
+        let problem = YarnProblem { space, ..problem.clone() };
+        let round = |starts, evaluations| Round { starts, evaluations, samples: POINTS };
+        let rounds = [round(1, 8), round(0, 0), round(0, 0)];
+        let settings = GradientSettings { screened: 1, rounds, ..gradients() };
+        let found = fit(&problem, &Here::new(&problem), &Way::Gradients(settings)).unwrap();
+        assert_eq!(found.open, [says], "{:?}", found.material);
     }
 }
 
@@ -107,7 +178,7 @@ fn slopes_through_rest_shapes_are_those_of_differences() {
     let mut off = truth;
     off[RodParameter::Bending as usize] *= 1.3;
     let residuals = |rest: [f64; P], at: [f64; P], slopes: bool| {
-        let question = Question { rest, at, samples: POINTS, slopes };
+        let question = Question { fabric: 0, rest, at, samples: POINTS, slopes };
         let Ok(found) = here.answer(&question);
         problem.residuals(&question, &found.unwrap())
     };

@@ -2,14 +2,15 @@
 //!
 //! Without a Chromium the tests say so and pass; with `WALE_REQUIRE_CHROMIUM=1` they fail instead.
 
+mod chromium;
+
 use std::{
     collections::HashSet,
     fs,
     path::{Path, PathBuf},
-    process::{Command, Stdio},
-    time::{Duration, Instant},
 };
 
+use chromium::{browse, chromium_or_say_so};
 use glam::{DQuat, DVec3};
 use wale::{
     geometry::{Curve, PointScalars, Solid, SolidShape},
@@ -20,27 +21,6 @@ use wale::{
 const WIDTH: usize = 900;
 const HEIGHT: usize = 600;
 const BACKGROUND: [u8; 3] = [243, 242, 239];
-
-/// The browser to test with: `WALE_CHROMIUM`, or the first of the usual names in the path.
-fn chromium() -> Option<PathBuf> {
-    if let Some(path) = std::env::var_os("WALE_CHROMIUM") {
-        return Some(path.into());
-    }
-    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-    let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|file| file.is_file())
-}
-
-/// The browser, or a loud word that the test saw nothing.
-fn chromium_or_say_so(test: &str) -> Option<PathBuf> {
-    let found = chromium();
-    if found.is_none() {
-        let required = std::env::var("WALE_REQUIRE_CHROMIUM").is_ok_and(|v| v == "1");
-        assert!(!required, "{test}: no Chromium found, and WALE_REQUIRE_CHROMIUM=1");
-        eprintln!("SKIPPED {test}: no Chromium found (set WALE_CHROMIUM to its path)");
-    }
-    found
-}
 
 /// Rows of loops of two colours that rise and bend with time, a ball behind them.
 fn swatch(frames: usize) -> ViewData {
@@ -85,28 +65,13 @@ fn swatch(frames: usize) -> ViewData {
 fn screenshot(browser: &Path, page: &Path, fragment: &str) -> Image {
     let folder = tempfile::tempdir().expect("a folder for the browser");
     let shot = folder.path().join("shot.png");
-    let mut child = Command::new(browser)
-        .args(["--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
-        .args(["--disable-background-networking", "--no-first-run", "--hide-scrollbars", "--disable-dev-shm-usage"])
-        .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
-        .arg(format!("--window-size={WIDTH},{HEIGHT}"))
-        .arg("--virtual-time-budget=10000")
-        .arg(format!("--screenshot={}", shot.display()))
-        .arg(format!("file://{}#{fragment}", page.display()))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("Chromium starts");
-    let start = Instant::now();
-    // Some versions stay after the picture is written; none may hang the test.
-    while child.try_wait().expect("Chromium can be waited for").is_none() {
-        if start.elapsed() > Duration::from_secs(120) {
-            child.kill().expect("Chromium can be stopped");
-            child.wait().expect("Chromium ends");
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    let more = [
+        "--use-angle=swiftshader".to_owned(),
+        "--enable-unsafe-swiftshader".to_owned(),
+        format!("--window-size={WIDTH},{HEIGHT}"),
+        format!("--screenshot={}", shot.display()),
+    ];
+    browse(browser, folder.path(), &format!("file://{}#{fragment}", page.display()), &more);
     let bytes = fs::read(&shot).expect("Chromium wrote a screenshot");
     if let Some(keep) = std::env::var_os("WALE_KEEP_SCREENSHOTS") {
         let name = fragment.replace(['=', '&'], "_");

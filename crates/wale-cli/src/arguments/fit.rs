@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::Results;
+
 /// `wale fit`
 #[derive(Debug, Args)]
 pub struct Fit {
-    /// Fabric file
-    pub fabric: PathBuf,
-    /// Folder for the card, the curves and the report; left out, beside the fabric file and named after it
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
-    /// Overwrite what is in that folder, answers of a fit that was stopped included
-    #[arg(long)]
-    pub force: bool,
+    /// Fabric file; several are of one yarn, which is fitted to all of them at once
+    #[arg(required = true, value_name = "FABRIC")]
+    pub fabrics: Vec<PathBuf>,
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub results: Results,
     /// Only read the fabric file and its tables, and say how they were understood
     #[arg(long)]
     pub read_only: bool,
@@ -36,14 +36,11 @@ pub struct Fit {
     /// Fit the yarn to the bending stiffnesses of the shell, too
     #[arg(long)]
     pub with_bending: bool,
+    /// Fit the yarn again without each of its parts and by other ways, and report what each is for; the swarm takes minutes
+    #[arg(long, conflicts_with_all = ["without", "with_bending", "shell_only", "read_only", "ask", "answer", "tell"])]
+    pub ablations: bool,
     #[command(flatten)]
     pub elsewhere: Elsewhere,
-    /// Print JSON
-    #[arg(long)]
-    pub json: bool,
-    /// Threads; all cores if left out
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
 }
 
 /// A fit whose questions are answered elsewhere.

@@ -11,6 +11,8 @@ use wale::scene::units::{Any, Bounds, Dimension, Positive, Quantity};
 use wale_lab::card_file::SheetBending;
 use wale_lab::fabric_file::ArealMass;
 
+use super::Results;
+
 /// `wale lab`
 #[derive(Debug, Args)]
 pub struct Lab {
@@ -51,18 +53,9 @@ pub enum Test {
 pub struct Common {
     /// Fabric file whose card `wale fit` has made, or a card
     pub fabric: PathBuf,
-    /// Folder for table, plot and numbers; left out, beside the file and named after it, with `.lab`
-    #[arg(long, value_name = "FOLDER")]
-    pub out: Option<PathBuf>,
-    /// Overwrite this test's files in that folder
-    #[arg(long)]
-    pub force: bool,
-    /// Print JSON, in SI units
-    #[arg(long)]
-    pub json: bool,
-    /// Threads; all cores if left out. Results do not depend on it
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub results: Results,
     /// Mass by area in place of the card's, such as "170 g/m^2"
     #[arg(long, value_name = "MASS", value_parser = positive::<ArealMass>)]
     pub areal_mass: Option<f64>,

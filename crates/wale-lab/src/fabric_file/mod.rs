@@ -53,6 +53,8 @@ pub struct FabricFile {
     pub stretch: Vec<StretchTest>,
     /// Pear-loop tests, by direction.
     pub bending: Vec<LoopTest>,
+    /// Bending rigidities that instruments printed, by direction.
+    pub rigidity: Vec<Rigidity>,
     /// The fabric file and all others that were opened for it.
     pub inputs: Vec<PathBuf>,
 }
@@ -105,6 +107,15 @@ pub struct LoopTest {
     pub curve: LoopCurve,
 }
 
+/// A bending rigidity that an instrument printed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rigidity {
+    /// Angle of the curvature from the weft \[rad\].
+    pub direction: f64,
+    /// Moment a width for each curvature \[N·m\].
+    pub value: f64,
+}
+
 /// Why a fabric cannot be had.
 #[derive(Clone, Debug, Error)]
 pub enum FabricFileError {
@@ -148,7 +159,8 @@ impl FabricFile {
             } else if of.iter().all(|test| test.curve.compression.is_none()) {
                 gaps.push(format!("no orthogonal compression along the {name}"));
             }
-            if !self.bending.iter().any(|test| near(test.direction)) {
+            let loops = self.bending.iter().any(|test| near(test.direction));
+            if !loops && !self.rigidity.iter().any(|test| near(test.direction)) {
                 gaps.push(format!("no bending test along the {name}"));
             }
         }
@@ -158,3 +170,23 @@ impl FabricFile {
 
 /// Directions with a name, and their angle from the weft \[°\].
 const DIRECTIONS: [(&str, f64); 3] = [("weft", 0.0), ("bias", 45.0), ("warp", 90.0)];
+
+/// A direction in words: its name if it has one, or its angle from the weft.
+#[must_use]
+pub fn direction_name(radians: f64) -> String {
+    let degrees = radians.to_degrees();
+    let named = DIRECTIONS.iter().find(|(_, known)| (degrees - known).abs() < 1e-9);
+    named.map_or_else(|| format!("{}°", (1e3 * degrees).round() / 1e3), |(name, _)| (*name).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_have_names() {
+        assert_eq!(direction_name(0.0), "weft");
+        assert_eq!(direction_name(45f64.to_radians()), "bias");
+        assert_eq!(direction_name(0.5), "28.648°");
+    }
+}

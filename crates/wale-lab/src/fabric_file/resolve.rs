@@ -10,7 +10,7 @@ use wale::scene::units::{Any, Quantity};
 use wale::scene::{Scene, TextFile};
 
 use super::schema::{FabricText, StructureText, TestText};
-use super::{FabricFile, FabricFileError, LoopTest, SCHEMA, StretchTest, Structure, Yarn};
+use super::{FabricFile, FabricFileError, LoopTest, Rigidity, SCHEMA, StretchTest, Structure, Yarn};
 use crate::curve::{LoopCurve, Request, Specimen, StretchCurve, Table};
 
 /// How far the shares of the yarns may be from the whole \[–\].
@@ -48,6 +48,12 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         let curve = LoopCurve::of(&read.table, &read.request)?;
         bending.push(LoopTest { direction: read.direction, specimen: read.specimen, curve });
     }
+    let mut rigidity = Vec::new();
+    for (index, test) in text.rigidity.iter().enumerate() {
+        let direction = direction(&test.direction, &format!("rigidity.{index}"), file)?;
+        rigidity.push(Rigidity { direction, value: test.value.si() });
+    }
+    rigidity.sort_by(|a, b| a.direction.total_cmp(&b.direction));
     stretch.sort_by(|a, b| a.direction.total_cmp(&b.direction));
     bending.sort_by(|a, b| a.direction.total_cmp(&b.direction));
     Ok(FabricFile {
@@ -58,6 +64,7 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         spacing: spacing.map(|spacing| spacing.map(Quantity::si)),
         stretch,
         bending,
+        rigidity,
         inputs,
     })
 }

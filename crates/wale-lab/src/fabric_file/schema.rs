@@ -6,6 +6,7 @@ use serde::Deserialize;
 use wale::scene::dimensions::{Force, Length, LinearDensity, Ratio};
 use wale::scene::units::{Dimension, Fraction, Positive, Quantity};
 
+use crate::card_file::SheetBending;
 use crate::curve::{ColumnName, Meaning};
 
 /// Mass per area \[kg/m²\].
@@ -41,6 +42,19 @@ pub struct FabricText {
     /// Pear-loop tests.
     #[serde(default)]
     pub bending: Vec<TestText>,
+    /// Bending rigidities that an instrument printed.
+    #[serde(default)]
+    pub rigidity: Vec<RigidityText>,
+}
+
+/// A bending rigidity `B`, as KES-FB2, FAST or a cantilever print it.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RigidityText {
+    /// As of a test.
+    pub direction: String,
+    /// What was printed: "0.1 gf cm^2/cm".
+    pub value: Quantity<SheetBending, Positive>,
 }
 
 /// A yarn of the fabric.

@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use thiserror::Error;
+use wale::picture::base64;
 
 /// Largest file \[bytes\].
 pub const MOST_BYTES: usize = 64 << 20;
@@ -136,20 +137,6 @@ fn jpeg_size(bytes: &[u8]) -> Option<[u32; 2]> {
     }
 }
 
-/// Base64 with padding \[RFC 4648\].
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let word = three.iter().fold(0u32, |w, b| w << 8 | u32::from(*b)) << (8 * (3 - three.len()));
-        for k in 0..4 {
-            let letter = char::from(LETTERS[(word >> (18 - 6 * k) & 63) as usize]);
-            text.push(if k <= three.len() { letter } else { '=' });
-        }
-    }
-    text
-}
-
 #[cfg(test)]
 pub(super) mod tests {
     use wale::picture::{Image, write_png};
@@ -177,8 +164,6 @@ pub(super) mod tests {
         let mut uri = Vec::new();
         Photograph::new("a.png", png(40, 30)).expect("a photograph").write_uri(&mut uri).expect("memory");
         assert!(uri.starts_with(b"data:image/png;base64,iVBORw0KGgo"));
-        let published = [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")];
-        published.iter().for_each(|(plain, coded)| assert_eq!(base64(plain.as_bytes()), *coded));
     }
 
     #[test]

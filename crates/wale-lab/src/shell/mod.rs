@@ -12,6 +12,7 @@ pub mod clamped_stretch;
 pub mod error;
 pub mod membrane_fit;
 pub mod mesh;
+pub mod of_fabric;
 pub mod pear_loop;
 pub mod polygon;
 pub mod rest;

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::problem::{Answers, P, Question, YarnProblem};
+use super::problem::{Answers, P, Question, YarnProblem, ask_all};
 use super::progress::Progress;
 use super::sequence::halton;
 use super::space::RodSpace;
@@ -72,7 +72,7 @@ const DIFFERENCE: f64 = 1e-2;
 /// Places that are nearer than this in every coordinate are one.
 const SAME: f64 = 0.02;
 
-/// Fits by gradients. `None` if the tile could not be tested anywhere.
+/// Fits fabrics of one yarn by gradients. `None` if they could not all be tested anywhere.
 ///
 /// Differs from the paper: there a swarm looks for the valley and COBYLA, which knows no derivatives, goes down it. Valleys are many here,
 /// and how deep one is shows only a few steps down, so that many are followed for a few steps and few for many. Rest shapes are found
@@ -82,19 +82,18 @@ const SAME: f64 = 0.02;
 /// # Errors
 /// If a question is not answered now.
 pub fn fit_by_gradients<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     settings: &GradientSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
     let cost = |coordinates: &[f64; P]| -> Result<Option<f64>, A::Unanswered> {
         let question = Question::of(RodSpace::parameters(*coordinates), settings.screening_samples, false);
-        let found = answers.answer(&question)?;
-        let cost = found.map(|found| problem.residuals(&question, &found).cost());
+        let cost = ask_all(problems, answers, &question)?.map(|residuals| residuals.cost());
         progress.tell(cost, &question.at);
         Ok(cost.filter(|cost| cost.is_finite()))
     };
-    let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problem.space.at_parts(halton(k))).collect();
+    let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problems[0].space.at_parts(halton(k))).collect();
     let looked: Vec<Result<Option<f64>, A::Unanswered>> = places.par_iter().map(cost).collect();
     let looked: Vec<Option<f64>> = looked.into_iter().collect::<Result<_, _>>()?;
     let seen = places.into_iter().zip(looked);
@@ -104,11 +103,11 @@ pub fn fit_by_gradients<A: Answers>(
     for (k, round) in settings.rounds.iter().enumerate().filter(|(_, round)| round.starts > 0) {
         let mut from: Vec<[f64; P]> = known.iter().take(round.starts).map(|found| found.coordinates).collect();
         if let (Some(best), true) = (known.first(), k > 0 && known[0].least_squares.is_some()) {
-            from.extend(with_earlier_onsets(problem, &best.coordinates));
+            from.extend(with_earlier_onsets(&problems[0], &best.coordinates));
         }
         let improved: Vec<Result<Option<Found>, A::Unanswered>> = from
             .par_iter()
-            .map(|&from| improve(problem, answers, from, round, settings.least_noise, progress))
+            .map(|&from| improve(problems, answers, from, round, settings.least_noise, progress))
             .collect();
         let mut improved: Vec<Found> =
             improved.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
@@ -152,7 +151,7 @@ fn with_earlier_onsets(problem: &YarnProblem, place: &[f64; P]) -> Vec<[f64; P]>
 /// # Errors
 /// As [`fit_by_gradients`].
 pub fn improve<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     from: [f64; P],
     round: &Round,
@@ -162,15 +161,15 @@ pub fn improve<A: Answers>(
     let evaluate = |coordinates: &[f64; P], slopes: bool| {
         let at = RodSpace::parameters(*coordinates);
         let question = Question::of(at, round.samples, slopes);
-        let residuals = answers.answer(&question)?.map(|found| problem.residuals(&question, &found));
+        let residuals = ask_all(problems, answers, &question)?;
         progress.tell(residuals.as_ref().map(Residuals::cost), &at);
         let Some(mut residuals) = residuals else { return Ok(None) };
-        if slopes && problem.rest_shapes {
-            add_slopes_of_rest(problem, answers, coordinates, &question, &mut residuals)?;
+        if slopes && problems[0].rest_shapes {
+            add_slopes_of_rest(problems, answers, coordinates, &question, &mut residuals)?;
         }
         Ok(Some(residuals))
     };
-    let bounds = problem.space.coordinate_bounds();
+    let bounds = problems[0].space.coordinate_bounds();
     let search = LeastSquaresSettings { max_evaluations: round.evaluations, bounds, least_noise };
     let found = fit(evaluate, &[from], &search)?;
     Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
@@ -179,13 +178,13 @@ pub fn improve<A: Answers>(
 /// Adds what each number does to the residuals by way of the rest shapes: they are found with a number that differs a little, and
 /// pulled with the one that does not.
 fn add_slopes_of_rest<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     coordinates: &[f64; P],
     question: &Question,
     residuals: &mut Residuals<P>,
 ) -> Result<(), A::Unanswered> {
-    let bounds = problem.space.coordinate_bounds();
+    let bounds = problems[0].space.coordinate_bounds();
     // Yarns at rest are stretched by too little for an onset to matter.
     let free = (0..P).filter(|&k| bounds[k][0] < bounds[k][1] && k != RodParameter::Onset as usize);
     let moved: Vec<(usize, f64, Question)> = free
@@ -196,10 +195,8 @@ fn add_slopes_of_rest<A: Answers>(
             (k, step, Question { rest: RodSpace::parameters(near), slopes: false, ..*question })
         })
         .collect();
-    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> = moved
-        .par_iter()
-        .map(|(_, _, asked)| Ok(answers.answer(asked)?.map(|found| problem.residuals(asked, &found))))
-        .collect();
+    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> =
+        moved.par_iter().map(|(_, _, asked)| ask_all(problems, answers, asked)).collect();
     for ((k, step, _), found) in moved.iter().zip(found) {
         // Where the tile cannot be tested with those, they are taken not to matter.
         let Some(found) = found? else { continue };

@@ -1,5 +1,6 @@
 //! Yarns fitted to the stretch of a fabric [Sperl2022, section 7.3].
 
+pub mod ablation;
 pub mod gradients;
 pub mod journal;
 mod objective;

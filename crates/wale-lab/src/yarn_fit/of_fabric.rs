@@ -3,35 +3,23 @@
 use std::path::PathBuf;
 
 use thiserror::Error;
-use wale::energy::{BendingStiffness, ContactPhase, ContactReading};
+use wale::energy::{ContactPhase, ContactReading};
 use wale::scene::ErrorClass;
 
+pub use super::ablation::Ablation;
 use super::objective::BendingTarget;
 use super::problem::YarnProblem;
 use super::pull::PullSettings;
 use super::space::RodSpace;
 use super::target::Target;
 use crate::fabric_file::{FabricFile, Structure};
-use crate::fabric_fit::FabricFit;
+use crate::shell::of_fabric::ShellFit;
 use crate::shell::uniform::uniform_stretch;
 use crate::shell::{ShellError, StretchCurve, StretchPoint};
 use crate::yarn_tile::{
-    PatternFileError, RestShapeSettings, RodMaterial, RodParameter, StructureError, TileError, YarnTile,
-    contact_radius, read_pattern, tile_of_chart, tile_of_draft,
+    PatternFileError, RestShapeSettings, RodMaterial, RodParameter, StructureError, TileError, Unsound, YarnTile,
+    contact_radius, read_pattern, tile_of_chart, tile_of_draft, unsound,
 };
-
-/// What of the paper's model is left out, to see what it is for [Sperl2022, Figs. 16 to 18].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Ablation {
-    /// Yarns of one stiffness.
-    pub one_phase: bool,
-    /// Yarns at rest as they were registered.
-    pub no_rest_shapes: bool,
-    /// Bending stiffnesses are fitted too.
-    pub with_bending: bool,
-    /// Nothing holds the yarns, as in the paper.
-    pub nothing_holds: bool,
-}
 
 /// Why a fabric's yarn cannot be fitted.
 #[derive(Clone, Debug, Error)]
@@ -50,6 +38,14 @@ pub enum YarnProblemError {
     /// It is no tile.
     #[error(transparent)]
     Pattern(#[from] PatternFileError),
+    /// The tile is no fabric.
+    #[error("{}: {reason}", .path.display())]
+    Unsound {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: Unsound,
+    },
     /// The chart or draft is no tile.
     #[error("the structure's scene: {0}")]
     Structure(#[from] StructureError),
@@ -59,6 +55,12 @@ pub enum YarnProblemError {
     /// The structure is neither a chart nor a draft.
     #[error("the structure's scene has neither a chart nor a draft that repeats; give the tile as a .pyp file")]
     NoRepeat,
+    /// Fabrics of one yarn say different things of it.
+    #[error("the fabrics are not of one yarn: its stiffness is {} N in one file and {} N in another", .stiffness[0], .stiffness[1])]
+    OtherYarn {
+        /// The stiffness \[N\] in both.
+        stiffness: [f64; 2],
+    },
     /// Curves cannot be made uniform.
     #[error(transparent)]
     Shell(#[from] ShellError),
@@ -79,6 +81,8 @@ pub const COMFORT: f64 = 0.4;
 const STIFFNESS: [f64; 2] = [2.0, 500.0];
 /// Bounds of the contact stiffness, in `k_s2/R_est`.
 const CONTACT: [f64; 2] = [1e-5, 10.0];
+/// How far stiffnesses of one yarn may be apart in two files \[–\]: they were rounded.
+const SAME: f64 = 1e-2;
 /// Curvature to which tiles are bent, over one by the longer period [after Sperl2022, section 9.1].
 const CURVATURE: f64 = 0.1;
 
@@ -90,7 +94,7 @@ const CURVATURE: f64 = 0.1;
 ///
 /// # Errors
 /// If the shell collapses at a stretch that was measured.
-pub fn uniform_targets(fabric: &FabricFile, shell: &FabricFit) -> Result<Vec<Target>, ShellError> {
+pub fn uniform_targets(fabric: &FabricFile, shell: &ShellFit) -> Result<Vec<Target>, ShellError> {
     let mut curves = Vec::new();
     for (test, points) in fabric.stretch.iter().zip(&shell.membrane.points) {
         let width = test.specimen.width;
@@ -122,7 +126,11 @@ pub fn structure_tile(fabric: &FabricFile) -> Result<YarnTile, YarnProblemError>
         Structure::Tile(path) => {
             let text = std::fs::read_to_string(path)
                 .map_err(|error| YarnProblemError::File { path: path.clone(), reason: error.to_string() })?;
-            Ok(read_pattern(&path.display().to_string(), &text)?)
+            let tile = read_pattern(&path.display().to_string(), &text)?;
+            match unsound(&tile) {
+                Some(reason) => Err(YarnProblemError::Unsound { path: path.clone(), reason }),
+                None => Ok(tile),
+            }
         }
         Structure::Scene(scene) => {
             if let (Some(chart), Some(card)) = (scene.structure.chart(), scene.fabric.knit()) {
@@ -141,23 +149,54 @@ pub fn structure_tile(fabric: &FabricFile) -> Result<YarnTile, YarnProblemError>
     }
 }
 
+/// What a fabric adds to the problem of its yarn.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// How its yarns lie.
+    pub tile: YarnTile,
+    /// Uniform stretches.
+    pub targets: Vec<Target>,
+    /// Bending stiffnesses, empty if they are not fitted.
+    pub bending: Vec<BendingTarget>,
+}
+
 /// The problem of a fabric whose shell is fitted.
 ///
 /// # Errors
 /// [`YarnProblemError`].
 pub fn yarn_problem(
     fabric: &FabricFile,
-    shell: &FabricFit,
+    shell: &ShellFit,
     ablation: Ablation,
 ) -> Result<YarnProblem, YarnProblemError> {
-    let tile = structure_tile(fabric)?;
-    let targets = uniform_targets(fabric, shell)?;
-    let stiffest = fabric.yarns.iter().filter_map(|yarn| yarn.stiffness).reduce(f64::max);
-    let bending = match (&shell.bending, ablation.with_bending) {
-        (Some(fit), true) => bending_targets(&fit.stiffness, &tile),
-        _ => Vec::new(),
-    };
-    Ok(problem(tile, targets, bending, stiffest, ablation))
+    yarn_problems(&[(fabric, shell)], ablation).map(|mut problems| problems.remove(0))
+}
+
+/// The problems of fabrics of one yarn whose shells are fitted, in their order.
+///
+/// # Errors
+/// [`YarnProblemError`].
+pub fn yarn_problems(
+    fabrics: &[(&FabricFile, &ShellFit)],
+    ablation: Ablation,
+) -> Result<Vec<YarnProblem>, YarnProblemError> {
+    let mut parts = Vec::with_capacity(fabrics.len());
+    let mut stiffest: Option<f64> = None;
+    for (fabric, shell) in fabrics {
+        let tile = structure_tile(fabric)?;
+        let targets = uniform_targets(fabric, shell)?;
+        let bending = if ablation.with_bending { bending_targets(fabric, shell, &tile) } else { Vec::new() };
+        parts.push(Part { tile, targets, bending });
+        if let Some(stiffness) = fabric.yarns.iter().filter_map(|yarn| yarn.stiffness).reduce(f64::max) {
+            match stiffest {
+                Some(other) if (other / stiffness - 1.0).abs() > SAME => {
+                    return Err(YarnProblemError::OtherYarn { stiffness: [other, stiffness] });
+                }
+                _ => stiffest = Some(stiffness),
+            }
+        }
+    }
+    Ok(problems(parts, stiffest, ablation))
 }
 
 /// The problem of a tile and its targets; `stiffest` is the stiffness \[N\] of the stiffest yarn, if it was measured.
@@ -169,11 +208,18 @@ pub fn problem(
     stiffest: Option<f64>,
     ablation: Ablation,
 ) -> YarnProblem {
-    let radius = contact_radius(&tile);
+    problems(vec![Part { tile, targets, bending }], stiffest, ablation).remove(0)
+}
+
+/// The problems of fabrics of one yarn: all have the same bounds and the same inner contact, made from the mean radius at which the
+/// yarns of a tile touch and from the largest tension that any fabric asks of its yarns.
+#[must_use]
+pub fn problems(parts: Vec<Part>, stiffest: Option<f64>, ablation: Ablation) -> Vec<YarnProblem> {
+    let radius = parts.iter().map(|part| contact_radius(&part.tile)).sum::<f64>() / parts.len().max(1) as f64;
     let (mut space, stiff) = match stiffest {
         Some(stiffness) => (RodSpace::paper(stiffness, radius), stiffness),
         None => {
-            let tension = tension(&tile, &targets);
+            let tension = parts.iter().map(|part| tension(&part.tile, &part.targets)).fold(0.0, f64::max);
             let stiff = tension * (STIFFNESS[0] * STIFFNESS[1]).sqrt();
             let bounds = STIFFNESS.map(|factor| factor * tension);
             let soft = [1e-3 * stiff, bounds[1]];
@@ -195,7 +241,7 @@ pub fn problem(
     };
     let rod = RodMaterial::solid_rod(radius, 1.0, 1.0);
     let base = RodMaterial { contact: [rod.contact[0], inner], reading: ContactReading::Barrier, ..rod };
-    YarnProblem {
+    let of_part = |Part { tile, targets, bending }: Part| YarnProblem {
         tile,
         base,
         space,
@@ -206,7 +252,8 @@ pub fn problem(
         // that no derivative leads to the bottom of a valley. Test: `a_yarn_is_found_again_from_its_curves`.
         rest: RestShapeSettings { early_rounds: 0, ..RestShapeSettings::default() },
         pull: PullSettings::default(),
-    }
+    };
+    parts.into_iter().map(of_part).collect()
 }
 
 /// Tension \[N\] of a yarn at the largest stress, if the yarns that cross a period share it.
@@ -219,10 +266,21 @@ fn tension(tile: &YarnTile, targets: &[Target]) -> f64 {
     targets.iter().map(share).fold(0.0, f64::max).max(f64::MIN_POSITIVE)
 }
 
-/// Bending stiffnesses that the tile should have, along weft, bias and warp.
-fn bending_targets(stiffness: &BendingStiffness, tile: &YarnTile) -> Vec<BendingTarget> {
+/// Bending stiffnesses that the tile should have: those that instruments printed, or those of the fitted shell, along weft, bias and
+/// warp. None if bending was not measured.
+fn bending_targets(fabric: &FabricFile, shell: &ShellFit, tile: &YarnTile) -> Vec<BendingTarget> {
     let curvature = CURVATURE / tile.periods()[0].max(tile.periods()[1]);
+    let target = |angle: f64, stiffness: f64| BendingTarget { angle, stiffness, curvature };
+    if !fabric.rigidity.is_empty() {
+        return fabric.rigidity.iter().map(|test| target(test.direction, test.value)).collect();
+    }
     let angles = [0.0, std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2];
-    let all = angles.into_iter().zip(stiffness.to_array());
-    all.map(|(angle, stiffness)| BendingTarget { angle, stiffness, curvature }).collect()
+    let fitted = shell.bending.iter().flat_map(|fit| angles.into_iter().zip(fit.stiffness.to_array()));
+    fitted.map(|(angle, stiffness)| target(angle, stiffness)).collect()
+}
+
+/// Whether there is anything to which a yarn's bending can be fitted.
+#[must_use]
+pub fn bending_is_known(fabric: &FabricFile, shell: &ShellFit) -> bool {
+    !fabric.rigidity.is_empty() || shell.bending.is_some()
 }

@@ -41,9 +41,12 @@ pub struct YarnProblem {
     pub pull: PullSettings,
 }
 
-/// A question: what does the tile do with these numbers?
+/// A question: what does a tile do with these numbers?
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Question {
+    /// Which of the fabrics that are fitted together is meant.
+    #[serde(default, skip_serializing_if = "is_first")]
+    pub fabric: usize,
     /// Numbers with which rest shapes are found.
     pub rest: [f64; P],
     /// Numbers with which the tile is then pulled.
@@ -54,11 +57,16 @@ pub struct Question {
     pub slopes: bool,
 }
 
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_first(fabric: &usize) -> bool {
+    *fabric == 0
+}
+
 impl Question {
-    /// Everything with the same numbers.
+    /// Everything with the same numbers, of the first fabric.
     #[must_use]
     pub fn of(at: [f64; P], samples: usize, slopes: bool) -> Self {
-        Self { rest: at, at, samples, slopes }
+        Self { fabric: 0, rest: at, at, samples, slopes }
     }
 }
 
@@ -83,16 +91,6 @@ pub trait Answers: Sync {
 }
 
 impl YarnProblem {
-    /// What tells it from other problems: SHA-256 of its JSON.
-    ///
-    /// # Panics
-    /// Never: its numbers are finite.
-    #[must_use]
-    pub fn fingerprint(&self) -> String {
-        let text = serde_json::to_vec(self).expect("finite numbers are JSON");
-        Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
-    }
-
     /// The tile with the rest shapes of some numbers; `None` if there are none.
     #[must_use]
     pub fn rested(&self, parameters: &[f64; P]) -> Option<YarnTile> {
@@ -137,30 +135,75 @@ impl YarnProblem {
     }
 }
 
-/// Tiles with their rest shapes by the bits of their numbers; none where there are none.
-type Rested = HashMap<[u64; P], Option<Arc<YarnTile>>>;
+/// What tells problems that are fitted together from others: SHA-256 of their JSON.
+///
+/// # Panics
+/// Never: their numbers are finite.
+#[must_use]
+pub fn fingerprint(problems: &[YarnProblem]) -> String {
+    let text = serde_json::to_vec(problems).expect("finite numbers are JSON");
+    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+}
 
-/// A problem that is answered here and now; rest shapes are kept for the next question with the same.
+/// Asks of all fabrics of one yarn at once; residuals in the order of the fabrics. `None` where one of them cannot be tested.
+///
+/// # Errors
+/// If one question is not answered now; the others have been asked.
+pub fn ask_all<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    question: &Question,
+) -> Result<Option<Residuals<P>>, A::Unanswered> {
+    let one = |(fabric, problem): (usize, &YarnProblem)| {
+        let question = Question { fabric, ..*question };
+        Ok(answers.answer(&question)?.map(|found| problem.residuals(&question, &found)))
+    };
+    let found: Vec<Result<Option<Residuals<P>>, A::Unanswered>> = problems.par_iter().enumerate().map(one).collect();
+    let found: Vec<Option<Residuals<P>>> = found.into_iter().collect::<Result<_, _>>()?;
+    let found: Option<Vec<Residuals<P>>> = found.into_iter().collect();
+    Ok(found.map(|each| {
+        let mut all = Residuals::default();
+        for one in each {
+            all.values.extend(one.values);
+            all.slopes.extend(one.slopes);
+        }
+        all
+    }))
+}
+
+/// Tiles with their rest shapes, by fabric and by the bits of their numbers; none where there are none.
+type Rested = HashMap<(usize, [u64; P]), Option<Arc<YarnTile>>>;
+
+/// Problems that are answered here and now; rest shapes are kept for the next question with the same.
 #[derive(Clone, Debug)]
 pub struct Here<'a> {
-    problem: &'a YarnProblem,
+    problems: &'a [YarnProblem],
     rested: Arc<Mutex<Rested>>,
 }
 
 impl<'a> Here<'a> {
-    /// Answers questions about a problem.
+    /// Answers questions about a fabric.
     #[must_use]
     pub fn new(problem: &'a YarnProblem) -> Self {
-        Self { problem, rested: Arc::default() }
+        Self::of(std::slice::from_ref(problem))
     }
 
-    /// The tile with the rest shapes of some numbers.
+    /// Answers questions about fabrics that are fitted together.
     #[must_use]
-    pub fn rested(&self, parameters: &[f64; P]) -> Option<Arc<YarnTile>> {
-        let key = parameters.map(f64::to_bits);
+    pub fn of(problems: &'a [YarnProblem]) -> Self {
+        Self { problems, rested: Arc::default() }
+    }
+
+    /// The tile of a fabric with the rest shapes of some numbers; none if there is no such fabric.
+    ///
+    /// # Panics
+    /// Never: nobody panics with the lock.
+    #[must_use]
+    pub fn rested(&self, fabric: usize, parameters: &[f64; P]) -> Option<Arc<YarnTile>> {
+        let key = (fabric, parameters.map(f64::to_bits));
         let known = self.rested.lock().expect("nobody panics with it").get(&key).cloned();
         known.unwrap_or_else(|| {
-            let found = self.problem.rested(parameters).map(Arc::new);
+            let found = self.problems.get(fabric).and_then(|problem| problem.rested(parameters)).map(Arc::new);
             self.rested.lock().expect("nobody panics with it").insert(key, found.clone());
             found
         })
@@ -171,6 +214,7 @@ impl Answers for Here<'_> {
     type Unanswered = std::convert::Infallible;
 
     fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Self::Unanswered> {
-        Ok(self.rested(&question.rest).and_then(|tile| self.problem.evaluate(&tile, question)))
+        let tile = self.rested(question.fabric, &question.rest);
+        Ok(tile.and_then(|tile| self.problems[question.fabric].evaluate(&tile, question)))
     }
 }

@@ -1,8 +1,10 @@
 //! A yarn fitted from the beginning to the end, by whichever way.
 
+use rayon::prelude::*;
+
 use super::gradients::{Found, GradientSettings, Round, fit_by_gradients, improve};
 use super::journal::Stopped;
-use super::objective::{YarnFitError, errors};
+use super::objective::{BendingTarget, YarnFitError, errors};
 use super::problem::{Answers, Evaluation, P, Question, YarnProblem};
 use super::progress::Progress;
 use super::space::RodSpace;
@@ -35,6 +37,8 @@ pub struct YarnFit {
     pub error: YarnFitError,
     /// What was to be met, and what the fitted yarn does there.
     pub targets: Vec<Target>,
+    /// Bending stiffnesses that were to be met, too; empty if they were not fitted.
+    pub bending: Vec<BendingTarget>,
     /// Its answers.
     pub evaluation: Evaluation,
     /// Factor within which each number is known with 95 % confidence, infinite where the data do not say, one where it was held. Of
@@ -46,7 +50,7 @@ pub struct YarnFit {
     pub open: Vec<String>,
 }
 
-/// Fits a yarn. `None` if its tile could not be tested anywhere within the bounds.
+/// Fits the yarn of a fabric. `None` if its tile could not be tested anywhere within the bounds.
 ///
 /// # Errors
 /// If a question is not answered now.
@@ -56,39 +60,77 @@ pub fn fit_yarn<A: Answers>(
     way: &Way,
     progress: &Progress<'_>,
 ) -> Result<Option<YarnFit>, A::Unanswered> {
+    let found = fit_together(std::slice::from_ref(problem), answers, way, progress)?;
+    Ok(found.and_then(|fits| fits.into_iter().next()))
+}
+
+/// Fits one yarn to all fabrics that are made of it: a fit for each, of the same material. `None` if there is no fabric, or if they
+/// could not all be tested anywhere. The bounds are those of the first; [`super::of_fabric::problems`] gives all the same.
+///
+/// # Errors
+/// If a question is not answered now.
+pub fn fit_together<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    way: &Way,
+    progress: &Progress<'_>,
+) -> Result<Option<Vec<YarnFit>>, A::Unanswered> {
+    if problems.is_empty() {
+        return Ok(None);
+    }
     let found = match way {
-        Way::Gradients(settings) => fit_by_gradients(problem, answers, settings, progress)?,
-        Way::Swarm(settings) => fit_by_swarm(problem, answers, settings, progress)?,
-        Way::Local(settings) => Some(fit_locally(problem, answers, [0.5; P], settings, progress)?),
+        Way::Gradients(settings) => fit_by_gradients(problems, answers, settings, progress)?,
+        Way::Swarm(settings) => fit_by_swarm(problems, answers, settings, progress)?,
+        Way::Local(settings) => Some(fit_locally(problems, answers, [0.5; P], settings, progress)?),
     };
     let Some(found) = found.filter(|found| found.cost < FAILED) else { return Ok(None) };
-    judge(problem, answers, found, progress)
+    judge(problems, answers, found, progress)
 }
 
 /// Looks at what was found once more: its curves, how well each number is known, and what is at a bound.
 fn judge<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     found: Found,
     progress: &Progress<'_>,
-) -> Result<Option<YarnFit>, A::Unanswered> {
+) -> Result<Option<Vec<YarnFit>>, A::Unanswered> {
     // At its own points: what lies between them was not measured.
-    let samples = problem.targets.iter().map(|target| target.points.len()).max().unwrap_or(1);
+    let points = problems.iter().flat_map(|problem| &problem.targets).map(|target| target.points.len());
+    let samples = points.max().unwrap_or(1);
     let looked = Round { starts: 1, evaluations: 1, samples };
     let least_noise = GradientSettings::default().least_noise;
     let at = found.coordinates;
     let within = match found.least_squares {
         Some(least_squares) => Some(least_squares.uncertainty),
         None => {
-            let once = improve(problem, answers, at, &looked, least_noise, progress)?;
+            let once = improve(problems, answers, at, &looked, least_noise, progress)?;
             once.and_then(|found| found.least_squares).map(|least_squares| least_squares.uncertainty)
         }
     };
     let within = within.unwrap_or([f64::INFINITY; P]);
     let parameters = RodSpace::parameters(at);
-    let question = Question::of(parameters, samples, false);
-    let Some(evaluation) = answers.answer(&question)? else { return Ok(None) };
-    let targets: Vec<Target> = problem.targets.iter().map(|target| target.resampled(samples)).collect();
+    let one = |(fabric, problem): (usize, &YarnProblem)| {
+        let question = Question { fabric, ..Question::of(parameters, samples, false) };
+        let Some(evaluation) = answers.answer(&question)? else { return Ok(None) };
+        let targets: Vec<Target> = problem.targets.iter().map(|target| target.resampled(samples)).collect();
+        Ok(Some(YarnFit {
+            material: problem.base.with_parameters(parameters),
+            cost: found.cost,
+            error: errors(&targets, &evaluation.stretch),
+            targets,
+            bending: problem.bending.clone(),
+            evaluation,
+            within,
+            evaluations: progress.now().evaluations,
+            open: open(problem, &at, &within),
+        }))
+    };
+    let fits: Vec<Result<Option<YarnFit>, A::Unanswered>> = problems.par_iter().enumerate().map(one).collect();
+    fits.into_iter().collect()
+}
+
+/// What a fit leaves open, in words.
+fn open(problem: &YarnProblem, at: &[f64; P], within: &[f64; P]) -> Vec<String> {
     let mut open = Vec::new();
     for (k, [low, high]) in problem.space.coordinate_bounds().into_iter().enumerate() {
         let (name, width) = (RodParameter::NAMES[k], high - low);
@@ -100,16 +142,7 @@ fn judge<A: Answers>(
             open.push(format!("{name} is not determined by these tests"));
         }
     }
-    Ok(Some(YarnFit {
-        material: problem.base.with_parameters(parameters),
-        cost: found.cost,
-        error: errors(&targets, &evaluation.stretch),
-        targets,
-        evaluation,
-        within,
-        evaluations: progress.now().evaluations,
-        open,
-    }))
+    open
 }
 
 /// Answers until somebody wants to stop.

@@ -6,7 +6,7 @@ use cobyla::{RhoBeg, StopTols, minimize};
 use rayon::prelude::*;
 
 use super::gradients::Found;
-use super::problem::{Answers, P, Question, YarnProblem};
+use super::problem::{Answers, P, Question, YarnProblem, ask_all};
 use super::progress::Progress;
 use super::sequence::Random;
 use super::space::RodSpace;
@@ -69,17 +69,17 @@ struct Particle {
     least: f64,
 }
 
-/// Fits by a swarm, then by COBYLA. `None` if the tile could be tested nowhere.
+/// Fits fabrics of one yarn by a swarm, then by COBYLA. `None` if they could all be tested nowhere.
 ///
 /// # Errors
 /// If a question is not answered now.
 pub fn fit_by_swarm<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     settings: &SwarmSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
-    let free = free(problem);
+    let free = free(&problems[0]);
     let mut random = Random::new(settings.seed);
     let mut cube = || std::array::from_fn(|k| if free[k] { random.next() } else { 0.5 });
     let mut particles: Vec<Particle> = (0..settings.particles)
@@ -93,7 +93,7 @@ pub fn fit_by_swarm<A: Answers>(
     for step in 0..settings.steps.max(1) {
         let costs: Vec<Result<f64, A::Unanswered>> = particles
             .par_iter()
-            .map(|particle| cost(problem, answers, &particle.place, settings.samples, progress))
+            .map(|particle| cost(problems, answers, &particle.place, settings.samples, progress))
             .collect();
         for (particle, cost) in particles.iter_mut().zip(costs) {
             let cost = cost?;
@@ -111,7 +111,7 @@ pub fn fit_by_swarm<A: Answers>(
     if least >= FAILED {
         return Ok(None);
     }
-    fit_locally(problem, answers, best, settings, progress).map(Some)
+    fit_locally(problems, answers, best, settings, progress).map(Some)
 }
 
 /// COBYLA from a place in the unit cube of the bounds.
@@ -119,13 +119,13 @@ pub fn fit_by_swarm<A: Answers>(
 /// # Errors
 /// As [`fit_by_swarm`].
 pub fn fit_locally<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     from: [f64; P],
     settings: &SwarmSettings,
     progress: &Progress<'_>,
 ) -> Result<Found, A::Unanswered> {
-    let free = free(problem);
+    let free = free(&problems[0]);
     let [evaluations, samples] = settings.local;
     let unknown: Vec<usize> = (0..P).filter(|&k| free[k]).collect();
     let whole = |x: &[f64]| {
@@ -141,7 +141,7 @@ pub fn fit_locally<A: Answers>(
             return FAILED;
         }
         let place = whole(x);
-        match cost(problem, answers, &place, samples, progress) {
+        match cost(problems, answers, &place, samples, progress) {
             Ok(cost) => {
                 let mut best = best.borrow_mut();
                 if cost < best.1 {
@@ -165,7 +165,7 @@ pub fn fit_locally<A: Answers>(
         return Err(end);
     }
     let (place, cost) = best.into_inner();
-    Ok(Found { coordinates: problem.space.at_parts(place), cost, least_squares: None })
+    Ok(Found { coordinates: problems[0].space.at_parts(place), cost, least_squares: None })
 }
 
 /// Which parameters are fitted.
@@ -174,14 +174,14 @@ fn free(problem: &YarnProblem) -> [bool; P] {
 }
 
 fn cost<A: Answers>(
-    problem: &YarnProblem,
+    problems: &[YarnProblem],
     answers: &A,
     place: &[f64; P],
     samples: usize,
     progress: &Progress<'_>,
 ) -> Result<f64, A::Unanswered> {
-    let question = Question::of(RodSpace::parameters(problem.space.at_parts(*place)), samples, false);
-    let cost = answers.answer(&question)?.map(|found| problem.residuals(&question, &found).cost());
+    let question = Question::of(RodSpace::parameters(problems[0].space.at_parts(*place)), samples, false);
+    let cost = ask_all(problems, answers, &question)?.map(|residuals| residuals.cost());
     let cost = cost.filter(|cost| cost.is_finite());
     progress.tell(cost, &question.at);
     Ok(cost.map_or(FAILED, |cost| cost.min(FAILED)))

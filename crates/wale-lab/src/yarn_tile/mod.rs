@@ -13,6 +13,7 @@ mod pattern_file;
 mod resized;
 mod rest_shape;
 mod sensitivity;
+mod soundness;
 mod stress;
 mod system;
 #[cfg(test)]
@@ -28,5 +29,6 @@ pub use of_structure::{StructureError, tile_of_chart, tile_of_draft};
 pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
 pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
 pub use sensitivity::{BendingAnswer, EquilibriumSlopes, RodParameter, bending_answer};
+pub use soundness::{Unsound, unsound};
 pub use stress::{CoarseStress, bending_stiffness};
 pub use tile::{Edge, TileFault, YarnTile};

@@ -2,11 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::closest::segment_distance;
 use super::coarse::CoarseDeformation;
 use super::equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolver};
 use super::material::RodMaterial;
-use super::neighbours::{Followers, near_pairs};
+use super::soundness::distances;
 use super::tile::YarnTile;
 
 /// How rest shapes are found.
@@ -112,18 +111,12 @@ fn reset(tile: &YarnTile, found: &TileEquilibrium, registered: &[f64], most: f64
 /// The least radius \[m\] with which every edge of a tile touches another, `R_est` [Sperl2022, section 7.3.2].
 #[must_use]
 pub fn contact_radius(tile: &YarnTile) -> f64 {
-    let followers = Followers::new(tile, std::f64::consts::PI * tile.radius());
     let mut within = 3.0 * tile.radius();
     // Farther than this no edge of a fabric is from all others.
     let farthest = 2.0 * (tile.periods()[0] + tile.periods()[1]);
     loop {
         let mut nearest = vec![f64::INFINITY; tile.vertex_count()];
-        for pair in near_pairs(tile, &CoarseDeformation::REST, tile.vertices(), &followers, within) {
-            let segment = |edge: u32, shift: [i32; 2]| {
-                let e = tile.edges[edge as usize];
-                [tile.image(e.ends[0], shift), tile.image(e.ends[1], [shift[0] + e.shift[0], shift[1] + e.shift[1]])]
-            };
-            let distance = segment_distance(segment(pair.first, [0, 0]), segment(pair.second, pair.shift));
+        for (pair, distance) in distances(tile, within) {
             for edge in [pair.first, pair.second] {
                 let least = &mut nearest[edge as usize];
                 *least = least.min(distance);

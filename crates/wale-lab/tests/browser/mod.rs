@@ -1,63 +1,22 @@
 //! A headless Chromium that opens a page, runs a script in it, and hands back what it answers or how it looks.
 
-use std::fs::{self, File};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+#[path = "../../../wale/tests/chromium/mod.rs"]
+mod chromium;
+
+use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 use wale::picture::{Image, read_png};
 
-/// Longest that a browser may take: a hung one must fail the test, not hang it.
-const PATIENCE: Duration = Duration::from_secs(120);
-
-/// The browser to test with: `WALE_CHROMIUM`, or the first of the usual names in the path.
-fn chromium() -> Option<PathBuf> {
-    if let Some(path) = std::env::var_os("WALE_CHROMIUM") {
-        return Some(path.into());
-    }
-    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
-    let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|file| file.is_file())
-}
-
-/// The browser, or a loud word that the test saw nothing.
-pub fn chromium_or_say_so(test: &str) -> Option<PathBuf> {
-    let found = chromium();
-    if found.is_none() {
-        let required = std::env::var("WALE_REQUIRE_CHROMIUM").is_ok_and(|v| v == "1");
-        assert!(!required, "{test}: no Chromium found, and WALE_REQUIRE_CHROMIUM=1");
-        eprintln!("SKIPPED {test}: no Chromium found (set WALE_CHROMIUM to its path)");
-    }
-    found
-}
+pub use chromium::chromium_or_say_so;
 
 /// Runs the browser on a page; what it prints.
 fn browse(browser: &Path, folder: &Path, html: &str, more: &[String]) -> String {
     let page = folder.join("page.html");
     fs::write(&page, html).expect("a page");
-    let printed = folder.join("printed");
-    let mut child = Command::new(browser)
-        .args(["--headless=new", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--no-first-run"])
-        .args(["--hide-scrollbars", "--disable-dev-shm-usage", "--virtual-time-budget=10000"])
-        .arg(format!("--user-data-dir={}", folder.join("profile").display()))
-        .args(more)
-        .arg(format!("file://{}", page.display()))
-        .stdout(File::create(&printed).expect("a file"))
-        .stderr(Stdio::null())
-        .spawn()
-        .expect("Chromium starts");
-    let start = Instant::now();
-    // Some versions stay after their work is done; none may hang the test.
-    while child.try_wait().expect("Chromium can be waited for").is_none() {
-        if start.elapsed() > PATIENCE {
-            child.kill().expect("Chromium can be stopped");
-            child.wait().expect("Chromium ends");
-            break;
-        }
-        std::thread::sleep(Duration::from_millis(20));
-    }
-    fs::read_to_string(&printed).expect("what Chromium printed")
+    let more = [&["--disable-gpu".to_owned()], more].concat();
+    chromium::browse(browser, folder, &format!("file://{}", page.display()), &more)
 }
 
 /// The page with a script that runs when the page is ready, which it may be before the script is read.

@@ -2,8 +2,10 @@
 //!
 //! [`Camera::framing`] places the eye, [`render`] casts the rays, [`write_png`] writes the file.
 
+pub mod base64;
 pub mod bvh;
 pub mod camera;
+pub mod chart_grid;
 pub mod color_map;
 mod hair;
 pub mod image;
@@ -20,7 +22,9 @@ mod spun_yarn;
 mod tube;
 pub mod yarn_colors;
 
+pub use base64::base64;
 pub use camera::{Camera, Projection, View};
+pub use chart_grid::{Chart, ChartGrid};
 pub use color_map::ColorMap;
 pub use image::Image;
 pub use plot::{Panel, Plot, PlotError, Series};

@@ -1,136 +1,191 @@
-//! `wale fit`: the thin shell and the yarn of a fabric file, by its stretch and bending tests.
+//! `wale fit`: the thin shell and the yarn of a fabric file, by its stretch and bending tests; of several, one yarn for all.
 
+mod ablations;
+mod deliver;
+mod places;
 mod questions;
-mod report;
 mod tell;
 mod yarn;
 
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
-use wale::scene::Scene;
 use wale_lab::card_file::YarnCard;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
-use wale_lab::fabric_fit::{FabricFit, FabricFitError, fit_fabric};
-use wale_lab::network_fit::NetworkFit;
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
-use wale_lab::yarn_fit::run::YarnFit;
-use wale_lab::yarn_tile::{YarnTile, write_pattern};
+use wale_lab::shell::of_fabric::{ShellFit, ShellFitError, fit_shell};
+use wale_lab::yarn_fit::of_fabric::{bending_is_known, structure_tile, yarn_problems};
+use wale_lab::yarn_fit::problem::YarnProblem;
 
 use crate::arguments::fit::Fit;
 use crate::exit::{Code, Failure};
 use crate::opened::scene_failure;
-use crate::{machine, output, say};
-
-/// Files of a finished fit; what they are is in `docs/topics/fabric-files.md`.
-const RESULTS: [&str; 6] = ["card.toml", "curves.csv", "curves.svg", "report.html", "tile.pyp", "swatch.toml"];
+use crate::signals::Signals;
+use crate::{machine, output};
+use deliver::Fitted;
+use places::Places;
 
 /// Reads, fits, tells and writes.
 pub fn fit(arguments: &Fit) -> Result<(), Failure> {
-    let folder = arguments.out.clone().unwrap_or_else(|| arguments.fabric.with_extension("fit"));
-    machine::use_threads(arguments.threads.map(usize::from))?;
+    let places = Places::of(arguments)?;
+    let folder = &places.folder;
+    machine::use_threads(arguments.results.threads.map(usize::from))?;
     if arguments.elsewhere.answer {
-        return questions::answer(&folder);
+        return questions::answer(folder);
     }
     if let Some(file) = &arguments.elsewhere.tell {
-        return questions::tell(&folder, file);
+        return questions::tell(folder, file);
     }
-    if arguments.elsewhere.ask && !arguments.force && folder.join(yarn::PROBLEM).exists() {
-        return questions::print(&yarn::ask(arguments, &folder, &yarn::problem(&folder)?)?);
+    if arguments.elsewhere.ask && !arguments.results.force && folder.join(yarn::PROBLEM).exists() {
+        return questions::print(&yarn::ask(arguments, folder, &yarn::problems(folder)?)?);
     }
-    let fabric = FabricFile::read(&arguments.fabric).map_err(|error| match error {
-        FabricFileError::Fabric(error) => scene_failure(error),
-        FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
-    })?;
+    let fabrics: Vec<FabricFile> = arguments.fabrics.iter().map(|path| read(path)).collect::<Result<_, _>>()?;
     if arguments.read_only {
-        return if arguments.json { output::json(&tell::read_json(&fabric)) } else { tell::reading(&fabric) };
+        return told_apart(arguments.results.json, &fabrics, tell::read_json, tell::reading);
     }
-    let taken = RESULTS.iter().any(|name| folder.join(name).exists());
-    if taken && !arguments.force {
+    if places.taken(arguments) && !arguments.results.force {
         let mend = "there is a fit in it: choose another with `--out`, or overwrite it with `--force`";
-        return Err(RecordError::NotEmpty { path: folder, mend }.into());
+        return Err(RecordError::NotEmpty { path: folder.clone(), mend }.into());
     }
-    // What is wrong with the yarns is said before the shell is fitted.
-    let with_yarn = fabric.structure.is_some() && !arguments.shell_only;
-    if with_yarn {
-        yarn::check(arguments, &fabric)?;
+    let with_yarn = with_yarn(arguments, &fabrics)?;
+    let named = |index: usize, error: &dyn std::fmt::Display| refused(&arguments.fabrics[index], error);
+    // What is wrong with the yarns is said before a shell is fitted.
+    for (index, fabric) in fabrics.iter().enumerate().filter(|_| with_yarn) {
+        structure_tile(fabric).map_err(|error| named(index, &error))?;
     }
-    let mut shell = fit_shell(&arguments.fabric, &fabric)?;
-    let problem = if with_yarn { Some(yarn::problem_of(arguments, &fabric, &shell, &folder)?) } else { None };
-    let yarn = match (problem, arguments.elsewhere.ask) {
-        (Some(problem), true) => return questions::print(&yarn::ask(arguments, &folder, &problem)?),
-        (Some(problem), false) => Some(yarn::fit(arguments, &folder, &problem)?),
-        (None, true) => {
-            let what = "only the fit of a yarn asks questions; add [structure] to the fabric file";
-            return Err(Failure::new(Code::BadInput, format_args!("{}: {what}", arguments.fabric.display())));
+    let shells = arguments.fabrics.iter().zip(&fabrics).map(|(path, fabric)| shell(path, fabric));
+    let mut shells: Vec<ShellFit> = shells.collect::<Result<_, _>>()?;
+    if !with_yarn {
+        if arguments.elsewhere.ask {
+            return Err(named(0, &"only the fit of a yarn asks questions; add [structure] to the fabric file"));
         }
-        (None, false) => None,
-    };
-    if let Some(found) = &yarn {
-        let tile = RESULTS[4].to_owned();
-        shell.card.yarn = Some(YarnCard { material: found.fit.material, within: found.fit.within, tile });
+        let (fabric, shell) = (fabrics.into_iter().next(), shells.pop());
+        let fitted = fabric.zip(shell).map(|(fabric, shell)| Fitted {
+            fabric,
+            shell,
+            yarn: None,
+            network: None,
+            ablated: Vec::new(),
+            missing: Vec::new(),
+        });
+        return deliver(arguments, &places, &fitted.into_iter().collect::<Vec<_>>());
     }
-    let network = if with_yarn { yarn::fit_contacts(&fabric, &mut shell) } else { None };
-    deliver(arguments, &folder, &fabric, &Fitted { shell, yarn, network })
+    let ablation = yarn::ablation(arguments);
+    let pairs: Vec<(&FabricFile, &ShellFit)> = fabrics.iter().zip(&shells).collect();
+    if let Some(index) =
+        pairs.iter().position(|(fabric, shell)| ablation.with_bending && !bending_is_known(fabric, shell))
+    {
+        return Err(named(
+            index,
+            &"--with-bending asks for [[rigidity]] in the fabric file, or for loops as [[bending]] and areal_mass",
+        ));
+    }
+    let problems = yarn_problems(&pairs, ablation).map_err(|error| named(0, &error))?;
+    yarn::prepare(folder, &problems, arguments.results.force)?;
+    if arguments.elsewhere.ask {
+        return questions::print(&yarn::ask(arguments, folder, &problems)?);
+    }
+    let fitted = fit_yarn(arguments, &places, fabrics, shells, problems)?;
+    deliver(arguments, &places, &fitted)
 }
 
-fn fit_shell(path: &Path, fabric: &FabricFile) -> Result<FabricFit, Failure> {
+/// The yarn, its ablations if they are wanted, and the contact model of each fabric.
+fn fit_yarn(
+    arguments: &Fit,
+    places: &Places,
+    fabrics: Vec<FabricFile>,
+    shells: Vec<ShellFit>,
+    problems: Vec<YarnProblem>,
+) -> Result<Vec<Fitted>, Failure> {
+    let folder = &places.folder;
+    let signals = Signals::listen().map_err(|error| Failure::new(Code::Io, error))?;
+    let tells = !arguments.results.json;
+    let task = yarn::Task { folder, problems: &problems, way: yarn::way(arguments), name: "yarn", tells };
+    let Some(yarns) = task.fit(&signals)? else {
+        let what = "the tile could be tested nowhere within the bounds: do its yarns pass through each other?";
+        return Err(Failure::new(Code::NotConverged, format_args!("{}: {what}", arguments.fabrics[0].display())));
+    };
+    let mut ablated = ablations::Ablations { of_fabric: vec![Vec::new(); fabrics.len()], missing: Vec::new() };
+    if arguments.ablations {
+        ablated = ablations::ablations(arguments, folder, &fabrics, &shells, &yarns, &signals)?;
+    }
+    let mut fitted = Vec::with_capacity(fabrics.len());
+    let yarns = problems.into_iter().zip(yarns);
+    for (((fabric, mut shell), yarn), ablated_here) in fabrics.into_iter().zip(shells).zip(yarns).zip(ablated.of_fabric)
+    {
+        let fit = &yarn.1.fit;
+        shell.card.yarn = Some(YarnCard { material: fit.material, within: fit.within, tile: deliver::TILE.to_owned() });
+        let network = yarn::fit_contacts(&fabric, &mut shell);
+        let missing = ablated.missing.clone();
+        fitted.push(Fitted { fabric, shell, yarn: Some(yarn), network, ablated: ablated_here, missing });
+    }
+    Ok(fitted)
+}
+
+/// Whether a yarn is fitted: where the file says how it lies. Several fabrics have nothing in common but their yarn.
+fn with_yarn(arguments: &Fit, fabrics: &[FabricFile]) -> Result<bool, Failure> {
+    let lies = |fabric: &FabricFile| fabric.structure.is_some();
+    if fabrics.len() > 1 {
+        if arguments.shell_only {
+            let what = "several fabrics are fitted together by their yarn; fit their shells one by one";
+            return Err(Failure::new(Code::Usage, what));
+        }
+        if let Some(index) = fabrics.iter().position(|fabric| !lies(fabric)) {
+            let what = "nothing says how the yarns lie; add [structure] with a scene or a tile";
+            return Err(refused(&arguments.fabrics[index], &what));
+        }
+    } else if arguments.ablations && !fabrics.iter().all(lies) {
+        let what = "only the fit of a yarn has ablations; add [structure] to the fabric file";
+        return Err(refused(&arguments.fabrics[0], &what));
+    }
+    Ok(!arguments.shell_only && fabrics.iter().all(lies))
+}
+
+fn refused(path: &Path, error: &dyn std::fmt::Display) -> Failure {
+    Failure::new(Code::BadInput, format_args!("{}: {error}", path.display()))
+}
+
+fn read(path: &Path) -> Result<FabricFile, Failure> {
+    FabricFile::read(path).map_err(|error| match error {
+        FabricFileError::Fabric(error) => scene_failure(error),
+        FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
+    })
+}
+
+fn shell(path: &Path, fabric: &FabricFile) -> Result<ShellFit, Failure> {
     let settings = MembraneFitSettings { targets: yarn::TARGETS, ..MembraneFitSettings::default() };
-    fit_fabric(fabric, &settings).map_err(|error| {
+    fit_shell(fabric, &settings).map_err(|error| {
         let code = match error {
-            FabricFitError::NoStretchTest => Code::BadInput,
-            FabricFitError::Shell(_) => Code::NotConverged,
+            ShellFitError::NoStretchTest => Code::BadInput,
+            ShellFitError::Shell(_) => Code::NotConverged,
         };
         Failure::new(code, format_args!("{}: {error}", path.display()))
     })
 }
 
-/// A yarn that was fitted, and the tile with its rest shapes.
-struct FittedYarn {
-    fit: YarnFit,
-    tile: YarnTile,
-}
-
-/// What was fitted.
-struct Fitted {
-    shell: FabricFit,
-    yarn: Option<FittedYarn>,
-    /// A scene with the contact model's stiffnesses.
-    network: Option<(Scene, NetworkFit)>,
-}
-
-fn deliver(
-    arguments: &Fit,
-    folder: &PathBuf,
-    fabric: &FabricFile,
-    Fitted { shell, yarn, network }: &Fitted,
+/// Tells one after the other; as JSON, a list where there are several.
+fn told_apart<T>(
+    as_json: bool,
+    all: &[T],
+    json: impl Fn(&T) -> serde_json::Value,
+    say: impl Fn(&T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
-    let fit = yarn.as_ref().map(|yarn| &yarn.fit);
-    let contacts = network.as_ref().map(|(_, fit)| fit);
-    let svg = report::plot(fabric, shell, fit).to_svg().map_err(|error| Failure::new(Code::BadInput, error))?;
-    write(&folder.join("curves.csv"), report::curves_csv(fabric, shell, fit).as_bytes())?;
-    write(&folder.join("curves.svg"), svg.as_bytes())?;
-    write(&folder.join("report.html"), report::page(fabric, &tell::lines(shell, fit, contacts), &svg).as_bytes())?;
-    if let Some(yarn) = yarn {
-        write(&folder.join("tile.pyp"), write_pattern(&yarn.tile).as_bytes())?;
+    match all {
+        [one] if as_json => output::json(&json(one)),
+        _ if as_json => output::json(&serde_json::Value::Array(all.iter().map(json).collect())),
+        _ => all.iter().try_for_each(say),
     }
-    if let Some((scene, _)) = network {
-        let text = scene.resolved_toml().map_err(|error| Failure::new(Code::Bug, error))?;
-        write(&folder.join("swatch.toml"), text.as_bytes())?;
+}
+
+fn deliver(arguments: &Fit, places: &Places, fitted: &[Fitted]) -> Result<(), Failure> {
+    let all: Vec<(&Fitted, &Path)> = fitted.iter().zip(places.of_fabric.iter().map(|path| path.as_path())).collect();
+    for (one, folder) in &all {
+        one.write(folder)?;
     }
-    // Last: a folder with a card has all the rest.
-    write(&folder.join("card.toml"), shell.card.to_toml().as_bytes())?;
-    if arguments.json {
-        return output::json(&tell::found_json(folder, shell, fit, contacts));
-    }
-    tell::reading(fabric)?;
-    for line in tell::lines(shell, fit, contacts) {
-        say!("{line}")?;
-    }
-    say!("  {}", folder.join("report.html").display())
+    let json = arguments.results.json;
+    told_apart(json, &all, |(one, folder)| one.json(folder), |(one, folder)| one.say(folder))
 }
 
 fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {

@@ -6,9 +6,9 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use wale_lab::yarn_fit::journal::Entry;
-use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, Question, YarnProblem};
+use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, Question, YarnProblem, fingerprint};
 
-use super::yarn::{ANSWERS, open, problem};
+use super::yarn::{ANSWERS, open, problems};
 use crate::exit::{Code, Failure};
 use crate::output::{line, note};
 
@@ -48,9 +48,9 @@ pub fn print(questions: &[(String, Question)]) -> Result<(), Failure> {
 
 /// Answers the questions of standard input.
 pub fn answer(folder: &Path) -> Result<(), Failure> {
-    let problem = problem(folder)?;
-    let fingerprint = problem.fingerprint();
-    let here = Here::new(&problem);
+    let problems = problems(folder)?;
+    let fingerprint = fingerprint(&problems);
+    let here = Here::of(&problems);
     let mut lines = io::stdin().lock().lines().enumerate();
     loop {
         let mut asked = Vec::new();
@@ -58,6 +58,10 @@ pub fn answer(folder: &Path) -> Result<(), Failure> {
             let text = text.map_err(|error| Failure::new(Code::Io, format_args!("standard input: {error}")))?;
             if !text.trim().is_empty() {
                 let ask = read::<Ask>("standard input", index, &text, &fingerprint, |ask| &ask.problem)?;
+                if ask.question.fabric >= problems.len() {
+                    let what = format!("fabric is {}, and there are {}", ask.question.fabric, problems.len());
+                    return Err(Failure::new(Code::BadInput, format_args!("standard input:{}: {what}", index + 1)));
+                }
                 if !(1..=MOST_SAMPLES).contains(&ask.question.samples) {
                     let what = format!("samples is {}, and should be 1 to {MOST_SAMPLES}", ask.question.samples);
                     return Err(Failure::new(Code::BadInput, format_args!("standard input:{}: {what}", index + 1)));
@@ -83,8 +87,8 @@ pub fn answer(folder: &Path) -> Result<(), Failure> {
 
 /// Takes answers from a file, or from standard input.
 pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
-    let problem = problem(folder)?;
-    let fingerprint = problem.fingerprint();
+    let problems = problems(folder)?;
+    let fingerprint = fingerprint(&problems);
     let (name, reader): (String, Box<dyn BufRead>) = if file == Path::new("-") {
         ("standard input".to_owned(), Box::new(io::stdin().lock()))
     } else {
@@ -99,8 +103,9 @@ pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
             continue;
         }
         let one = read::<Told>(&name, index, &text, &fingerprint, |told| &told.problem)?;
-        if !fits(&problem, &one) {
-            let what = "the answer has not as many points as the question asks for";
+        if !fits(&problems, &one) {
+            let what =
+                "the answer has not as many points as the question asks for, or is of a fabric that is not there";
             return Err(Failure::new(Code::BadInput, format_args!("{name}:{}: {what}", index + 1)));
         }
         told.push(one);
@@ -117,7 +122,8 @@ pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
 }
 
 /// Whether an answer is one to its question.
-fn fits(problem: &YarnProblem, told: &Told) -> bool {
+fn fits(problems: &[YarnProblem], told: &Told) -> bool {
+    let Some(problem) = problems.get(told.question.fabric) else { return false };
     told.answer.as_ref().is_none_or(|answer| {
         answer.stretch.len() == problem.targets.len()
             && answer.stretch.iter().all(|curve| curve.len() == told.question.samples)

@@ -5,25 +5,17 @@ use std::path::Path;
 use serde_json::json;
 use wale::dynamics::tile_stiffness::TileStiffness;
 use wale::energy::{BendingStiffness, MembraneStiffness};
-use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::FabricFit;
+use wale_lab::fabric_file::{FabricFile, direction_name};
 use wale_lab::network_fit::NetworkFit;
+use wale_lab::report::Conclusion;
+use wale_lab::shell::of_fabric::ShellFit;
 use wale_lab::yarn_fit::YarnFitError;
+use wale_lab::yarn_fit::ablation::AblationKind;
 use wale_lab::yarn_fit::run::YarnFit;
 use wale_lab::yarn_tile::RodParameter;
 
 use crate::exit::Failure;
 use crate::say;
-
-/// A direction by its name, if it has one.
-pub fn degrees(radians: f64) -> String {
-    match radians.to_degrees().round() as i64 {
-        0 => "weft".to_owned(),
-        45 => "bias".to_owned(),
-        90 => "warp".to_owned(),
-        other => format!("{other}°"),
-    }
-}
 
 /// How the tables were understood.
 pub fn reading(fabric: &FabricFile) -> Result<(), Failure> {
@@ -33,7 +25,7 @@ pub fn reading(fabric: &FabricFile) -> Result<(), Failure> {
         let (stretch, force) = (stretch.unwrap_or_default(), force.unwrap_or_default());
         say!(
             "  stretch along the {}: {} samples to {:.1} %, {force:.3} N",
-            degrees(test.direction),
+            direction_name(test.direction),
             test.curve.stretch.len(),
             100.0 * stretch
         )?;
@@ -42,10 +34,13 @@ pub fn reading(fabric: &FabricFile) -> Result<(), Failure> {
         }
     }
     for test in &fabric.bending {
-        say!("  loops along the {}: {}", degrees(test.direction), test.curve.distance.len())?;
+        say!("  loops along the {}: {}", direction_name(test.direction), test.curve.distance.len())?;
         for line in &test.curve.read_as {
             say!("    {line}")?;
         }
+    }
+    for test in &fabric.rigidity {
+        say!("  bending rigidity along the {}: {:.3} µN·m", direction_name(test.direction), 1e6 * test.value)?;
     }
     for gap in fabric.gaps() {
         say!("  {gap}")?;
@@ -70,6 +65,10 @@ pub fn read_json(fabric: &FabricFile) -> serde_json::Value {
             "aspect_ratio": test.curve.aspect_ratio,
             "read_as": test.curve.read_as,
         })).collect::<Vec<_>>(),
+        "rigidity": fabric.rigidity.iter().map(|test| json!({
+            "direction_rad": test.direction,
+            "value_N_m": test.value,
+        })).collect::<Vec<_>>(),
         "gaps": fabric.gaps(),
     })
 }
@@ -77,9 +76,10 @@ pub fn read_json(fabric: &FabricFile) -> serde_json::Value {
 /// What was found, as JSON.
 pub fn found_json(
     folder: &Path,
-    found: &FabricFit,
+    found: &ShellFit,
     yarn: Option<&YarnFit>,
     contacts: Option<&NetworkFit>,
+    ablations: &[(AblationKind, Option<YarnFitError>, Conclusion)],
 ) -> serde_json::Value {
     // Infinite factors are no numbers in JSON.
     let factors = |within: &[f64]| within.iter().map(|w| w.is_finite().then_some(*w)).collect::<Vec<Option<f64>>>();
@@ -108,12 +108,18 @@ pub fn found_json(
             "undetermined": contacts.undetermined,
             "at_bound": contacts.at_bound,
         })),
+        "ablations": ablations.iter().map(|(kind, error, conclusion)| json!({
+            "name": kind.name(),
+            "error": error,
+            "conclusion": conclusion.sentence,
+            "as_the_paper": conclusion.as_the_paper,
+        })).collect::<Vec<_>>(),
         "open": found.open,
     })
 }
 
 /// What was found, in lines.
-pub fn lines(found: &FabricFit, yarn: Option<&YarnFit>, contacts: Option<&NetworkFit>) -> Vec<String> {
+pub fn lines(found: &ShellFit, yarn: Option<&YarnFit>, contacts: Option<&NetworkFit>) -> Vec<String> {
     let mut lines = vec![format!(
         "thin shell: mean error {:.1} % of force, {:.1} % of compression",
         100.0 * found.membrane.force_error,

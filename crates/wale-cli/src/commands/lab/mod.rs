@@ -63,9 +63,9 @@ fn perform(
     run: impl FnOnce(&Card) -> Result<Report, ShellError>,
 ) -> Result<(), Failure> {
     let card = card(arguments, needs)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| arguments.fabric.with_extension("lab"));
-    refuse_taken(&folder, test, &Report::suffixes(extras), arguments.force)?;
-    machine::use_threads(arguments.threads.map(usize::from))?;
+    let folder = arguments.results.out.clone().unwrap_or_else(|| arguments.fabric.with_extension("lab"));
+    refuse_taken(&folder, test, &Report::suffixes(extras), arguments.results.force)?;
+    machine::use_threads(arguments.results.threads.map(usize::from))?;
     let mut report = run(&card).map_err(|error| {
         let code = match error {
             ShellError::Number { .. } | ShellError::Mesh(_) => Code::BadInput,
@@ -74,7 +74,7 @@ fn perform(
         Failure::new(code, format_args!("{}: {error}", arguments.fabric.display()))
     })?;
     report.remarks.extend(card.remarks.iter().cloned());
-    report.deliver(&card.title, &folder, arguments.json)
+    report.deliver(&card.title, &folder, arguments.results.json)
 }
 
 /// Directions that were asked for; weft, bias and warp if none was.

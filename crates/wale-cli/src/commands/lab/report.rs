@@ -7,6 +7,7 @@ use serde_json::{Map, Value, json};
 use wale::picture::Plot;
 use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
+pub use wale_lab::fabric_file::direction_name;
 
 use crate::exit::{Code, Failure};
 use crate::{output, say};
@@ -89,17 +90,6 @@ pub fn digits(value: f64) -> String {
     } else {
         format!("{value:.3e}")
     }
-}
-
-/// A direction in words.
-pub fn direction_name(radians: f64) -> String {
-    let degrees = radians.to_degrees();
-    for (name, known) in [("weft", 0.0), ("bias", 45.0), ("warp", 90.0)] {
-        if (degrees - known).abs() < 1e-9 {
-            return name.to_owned();
-        }
-    }
-    format!("{}°", (1e3 * degrees).round() / 1e3)
 }
 
 impl Report {
@@ -205,7 +195,5 @@ mod tests {
         ] {
             assert_eq!(digits(value), text);
         }
-        assert_eq!(direction_name(45f64.to_radians()), "bias");
-        assert_eq!(direction_name(0.5), "28.648°");
     }
 }

@@ -4,7 +4,7 @@ use thiserror::Error;
 use wale::energy::BendingStiffness;
 
 use crate::card_file::CardFile;
-use crate::fabric_file::FabricFile;
+use crate::fabric_file::{FabricFile, Rigidity};
 use crate::shell::bending_fit::{BendingFit, PearCurve, fit_bending};
 use crate::shell::membrane_fit::{MeasuredStretch, MembraneFit, MembraneFitSettings, StretchTest, fit_membrane};
 use crate::shell::stretch_curve::{StretchCurve, StretchPoint};
@@ -15,7 +15,7 @@ const EDGE: f64 = 0.1;
 
 /// What was fitted.
 #[derive(Clone, Debug)]
-pub struct FabricFit {
+pub struct ShellFit {
     /// In-plane stiffnesses, by clamped stretch tests of the specimens' sizes.
     pub membrane: MembraneFit,
     /// Bending stiffnesses, if loops were measured and the mass is known.
@@ -28,7 +28,7 @@ pub struct FabricFit {
 
 /// Why nothing was fitted.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum FabricFitError {
+pub enum ShellFitError {
     /// There is no stretch test.
     #[error("the fabric has no stretch test to fit; add one as [[stretch]] with direction and file")]
     NoStretchTest,
@@ -45,13 +45,25 @@ fn strip(measured: &MeasuredStretch, test: &crate::fabric_file::StretchTest) -> 
     one
 }
 
+/// Bending stiffnesses from rigidities that instruments printed, if there are those of weft and warp.
+fn printed(rigidity: &[Rigidity], open: &mut Vec<String>) -> Option<BendingStiffness> {
+    let along = |degrees: f64| rigidity.iter().find(|test| (test.direction.to_degrees() - degrees).abs() < 1.0);
+    let [weft, warp] = [along(0.0)?.value, along(90.0)?.value];
+    let mean = || {
+        open.push("bending along the bias is taken for the mean of those along weft and warp".to_owned());
+        (weft * warp).sqrt()
+    };
+    let bias = along(45.0).map_or_else(mean, |test| test.value);
+    Some(BendingStiffness { weft, bias, warp })
+}
+
 /// Fits a thin shell to the tests of a fabric.
 ///
 /// # Errors
-/// [`FabricFitError`].
-pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<FabricFit, FabricFitError> {
+/// [`ShellFitError`].
+pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<ShellFit, ShellFitError> {
     if fabric.stretch.is_empty() {
-        return Err(FabricFitError::NoStretchTest);
+        return Err(ShellFitError::NoStretchTest);
     }
     let mut open = fabric.gaps();
     let measured: Vec<MeasuredStretch> = fabric
@@ -120,8 +132,24 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
         areal_mass: fabric.areal_mass,
         membrane: membrane.stiffness,
         membrane_within: membrane.least_squares.uncertainty,
-        bending: bending.as_ref().map(|fit| fit.stiffness),
+        bending: bending.as_ref().map(|fit| fit.stiffness).or_else(|| printed(&fabric.rigidity, &mut open)),
         yarn: None,
     };
-    Ok(FabricFit { membrane, bending, card, open })
+    Ok(ShellFit { membrane, bending, card, open })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn printed_rigidities_become_a_card_as_far_as_they_go() {
+        let test = |degrees: f64, value: f64| Rigidity { direction: degrees.to_radians(), value };
+        let mut open = Vec::new();
+        assert_eq!(printed(&[test(0.0, 1e-6)], &mut open), None);
+        let found = printed(&[test(0.0, 1e-6), test(90.0, 4e-6)], &mut open).unwrap();
+        assert!((found.bias - 2e-6).abs() < 1e-18 && open.len() == 1);
+        let found = printed(&[test(0.0, 1e-6), test(45.0, 3e-6), test(90.0, 4e-6)], &mut open).unwrap();
+        assert!(found.bias == 3e-6 && open.len() == 1);
+    }
 }

@@ -5,8 +5,8 @@ use std::fs;
 
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::{FabricFit, fit_fabric};
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::of_fabric::{ShellFit, fit_shell};
 use wale_lab::shell::uniform::uniform_stretch;
 use wale_lab::shell::{ClampedStretch, PearLoop, ShellCard};
 use wale_lab::yarn_fit::of_fabric::uniform_targets;
@@ -49,7 +49,7 @@ fn specimens_of_different_size_are_fitted_as_what_they_are() {
     let path = folder.path().join("fabric.toml");
     fs::write(&path, fabric).unwrap();
     let fabric = FabricFile::read(&path).unwrap();
-    let found = fit_fabric(&fabric, &MembraneFitSettings::default()).unwrap();
+    let found = fit_shell(&fabric, &MembraneFitSettings::default()).unwrap();
     assert!(found.membrane.force_error < 2e-3 && found.membrane.compression_error < 5e-3, "{:?}", found.membrane);
     let [k, truth] = [found.membrane.stiffness, membrane].map(|k| [k.xx, k.yy, k.ss]);
     assert!(k.iter().zip(truth).all(|(k, truth)| (k / truth - 1.0).abs() < 0.05), "{k:?}");
@@ -61,7 +61,7 @@ fn specimens_of_different_size_are_fitted_as_what_they_are() {
 }
 
 /// What a yarn is fitted to: the clamps' share is taken out of what was measured.
-fn targets_of_a_shell_are_its_uniform_curves(fabric: &FabricFile, found: &FabricFit, truth: &MembraneStiffness) {
+fn targets_of_a_shell_are_its_uniform_curves(fabric: &FabricFile, found: &ShellFit, truth: &MembraneStiffness) {
     let targets = uniform_targets(fabric, found).unwrap();
     assert_eq!(targets.len(), 3);
     let mut clamped_off = 0.0f64;
