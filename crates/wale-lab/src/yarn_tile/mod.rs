@@ -15,7 +15,7 @@ mod sensitivity;
 mod stress;
 mod system;
 #[cfg(test)]
-mod test_tiles;
+pub(crate) mod test_tiles;
 #[cfg(test)]
 mod tests;
 mod tile;
