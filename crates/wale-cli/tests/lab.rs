@@ -77,7 +77,7 @@ fn told(arguments: &[&str], input: &str) -> Output {
 
 /// A card with the yarn of a plain weave, and its tile beside it.
 fn write_woven_card(folder: &Path) -> String {
-    use wale::pattern::Draft;
+    use wale::pattern::weave::Draft;
     use wale_lab::yarn_tile::{RodMaterial, tile_of_draft, write_pattern};
     let (spacing, radius) = (1.0e-3, 0.2e-3);
     let tile = tile_of_draft(&Draft::plain(), radius, [spacing; 2], [2.0 * radius; 2]).unwrap();

@@ -168,7 +168,8 @@ impl ClampedSwatch {
                 unloading[n - 1] = end;
                 end[0]
             }
-            n => unloading[n - 1][0],
+            // It is back where it was, and still pulls.
+            _ => 0.0,
         };
         let area = |points: &[[f64; 3]]| -> f64 {
             points.windows(2).map(|p| 0.5 * (p[1][0] - p[0][0]) * (p[0][1] + p[1][1])).sum()
@@ -282,5 +283,49 @@ impl<'a> Drawn<'a> {
         let contraction = 1.0 - self.measured.between(&frame.positions) / self.between;
         let stretch = grip.displacement[self.axis] / self.measured.length;
         [stretch, grip.force[self.axis] / self.measured.width, contraction]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn garter() -> Scene {
+        let text = "schema = 1\n[fabric.chart]\npattern = \"garter\"\ncolumns = 4\nrows = 4\n";
+        Scene::from_text(text, "garter.toml").unwrap()
+    }
+
+    #[test]
+    fn what_is_drawn_with_friction_does_not_give_all_work_back() {
+        let specimen = Specimen { length: 0.2, width: 0.2 };
+        let test = ClampedSwatch {
+            rate: 0.2,
+            spacing: 0.01,
+            most_loops: 36,
+            ..ClampedSwatch::new(specimen, false, Until::Stretch(0.1))
+        };
+        let found = test.run(&garter()).unwrap();
+        assert!(found.made_smaller && found.loops.iter().all(|&count| count >= 6), "{found:?}");
+        let last = found.loading[found.loading.len() - 1];
+        assert!((last[0] - 0.1).abs() < 1e-6 && found.loading.len() == 11, "{found:?}");
+        assert!(last[1] > found.loading[0][1] && found.work > 0.0);
+        assert!(found.returned > 0.2 && found.returned < 0.98, "{}", found.returned);
+        assert!(found.residual >= 0.0 && found.residual < 0.1);
+        // At each stretch the force is smaller on the way back.
+        let there = |stretch: f64| found.loading.iter().find(|p| (p[0] - stretch).abs() < 1e-6).map(|p| p[1]);
+        for point in &found.unloading[1..found.unloading.len() - 1] {
+            assert!(there(point[0]).is_none_or(|force| point[1] < force), "{point:?}");
+        }
+    }
+
+    #[test]
+    fn impossible_tests_are_errors() {
+        let specimen = Specimen { length: 0.1, width: 0.1 };
+        let test = |until| ClampedSwatch::new(specimen, true, until).run(&garter());
+        assert!(matches!(test(Until::Stretch(-0.1)), Err(SwatchTestError::Number { .. })));
+        assert!(matches!(test(Until::LineLoad(f64::NAN)), Err(SwatchTestError::Number { .. })));
+        let still = ClampedSwatch { rate: 0.0, ..ClampedSwatch::new(specimen, true, Until::Stretch(0.1)) };
+        assert!(matches!(still.run(&garter()), Err(SwatchTestError::Number { .. })));
+        assert!(matches!(crate::swatch_test::curl(&garter(), 100, 100), Err(SwatchTestError::TooLarge { .. })));
     }
 }

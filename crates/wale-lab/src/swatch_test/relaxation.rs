@@ -56,3 +56,33 @@ pub fn shrinkage_of_swatch(scene: &Scene, columns: usize, rows: usize) -> Result
     }
     Ok(Shrinkage { knitted, relaxed: spacing(&simulation) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shrinkage_is_by_side_and_area() {
+        let found = Shrinkage { knitted: [2.0, 1.0], relaxed: [1.0, 1.1] };
+        let [width, length] = found.shrinkage();
+        assert!((width - 0.5).abs() < 1e-15 && (length + 0.1).abs() < 1e-15);
+        assert!((found.of_area() - 0.45).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_repeat_that_is_laid_out_too_wide_shrinks_to_the_same_size() {
+        let scene = |spacing: &str| {
+            let text = format!(
+                "schema = 1\n[fabric]\n{spacing}[fabric.chart]\npattern = \"stockinette\"\ncolumns = 4\nrows = 4\n"
+            );
+            Scene::from_text(&text, "stockinette.toml").unwrap()
+        };
+        let [plain, wide] =
+            ["", "wale_spacing = \"5 mm\"\n"].map(|spacing| shrinkage_of_tile(&scene(spacing)).unwrap());
+        assert!((wide.knitted[0] - 5e-3).abs() < 1e-12 && wide.knitted[1] == plain.knitted[1]);
+        for axis in 0..2 {
+            assert!((wide.relaxed[axis] / plain.relaxed[axis] - 1.0).abs() < 1e-3, "{plain:?} {wide:?}");
+        }
+        assert!(wide.shrinkage()[0] > plain.shrinkage()[0]);
+    }
+}
