@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""A fit on a Dask cluster of this machine, one worker of which is lost on the way, gives the card that the program alone gives.
+"""A fit on a Dask cluster of this machine, one worker of which is lost on the way, gives the card that the program alone gives; and tests
+of that card give the files.
 
 python tools/check_dask.py WALE FABRIC.toml FOLDER
 """
@@ -14,6 +15,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "drivers
 
 from dask.distributed import Client, LocalCluster
 from fit_on_dask import call, fit
+from lab_on_dask import lab
 
 
 def main():
@@ -30,8 +32,14 @@ def main():
                 print(f"worker {lost} is lost")
 
         rounds, answers = fit(client, wale, fabric, folder / "dask", ["--quick"], lose_a_worker)
+        card, tested = str(folder / "alone" / "card.toml"), ["kes-tensile", "--direction", "weft", "--direction", "warp"]
+        call([wale, "lab", *tested, card, "--out", str(folder / "lab-alone")])
+        lab(client, wale, tested[0], [card], [*tested[1:], "--out", str(folder / "lab-dask")])
     alone, together = [(folder / name / "card.toml").read_text() for name in ("alone", "dask")]
     assert alone == together, "the cards differ"
+    for suffix in ("csv", "svg"):
+        alone, together = [(folder / name / f"kes-tensile.{suffix}").read_text() for name in ("lab-alone", "lab-dask")]
+        assert alone == together, f"kes-tensile.{suffix} differs"
     print(f"{answers} answers in {rounds} rounds give the same card")
 
 

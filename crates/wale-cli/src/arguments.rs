@@ -73,7 +73,7 @@ pub enum Command {
 }
 
 /// Where the results of a fabric go, and how they are told.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct Results {
     /// Folder for what is written; left out, beside the file and named after it
     #[arg(long, value_name = "FOLDER")]

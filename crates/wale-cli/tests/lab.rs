@@ -1,8 +1,9 @@
 //! `wale lab` from a card to numbers, table and plot, and what it says of bad input.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn wale(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_wale")).args(arguments).output().unwrap()
@@ -33,7 +34,9 @@ fn a_card_is_tested_and_told_in_the_units_of_instruments() {
     let output = wale(&["lab", "kes-bending", card, "--direction", "weft", "--direction", "30 deg", "--threads", "1"]);
     assert!(output.status.success(), "{}", error(&output));
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    for says in ["Suiting: KES-FB2", "0.1000 gf·cm²/cm", "30°", "a shell cannot tell", "k_ss", "zero of any card"] {
+    for says in
+        ["Suiting: KES-FB2", "0.1000 gf·cm²/cm", "30°", "an elastic model cannot tell", "k_ss", "zero of any card"]
+    {
         assert!(text.contains(says), "{says}: {text}");
     }
     let out = folder.path().join("card.lab");
@@ -56,6 +59,180 @@ fn a_card_is_tested_and_told_in_the_units_of_instruments() {
         fs::read_to_string(out.join("picture-frame.json")).unwrap().trim(),
         String::from_utf8_lossy(&output.stdout).trim()
     );
+}
+
+/// As [`wale`], with a text for its standard input.
+fn told(arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_wale"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // A program that ends before it reads is no fault of the test.
+    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
+    child.wait_with_output().unwrap()
+}
+
+/// A card with the yarn of a plain weave, and its tile beside it.
+fn write_woven_card(folder: &Path) -> String {
+    use wale::pattern::weave::Draft;
+    use wale_lab::yarn_tile::{RodMaterial, tile_of_draft, write_pattern};
+    let (spacing, radius) = (1.0e-3, 0.2e-3);
+    let tile = tile_of_draft(&Draft::plain(), radius, [spacing; 2], [2.0 * radius; 2]).unwrap();
+    let material = RodMaterial::solid_rod(radius, 1e7, 10.0);
+    let path = folder.join("woven.toml");
+    write_card(&path);
+    let [one, two] = material.contact;
+    let text = format!(
+        "{}[yarn]\nk_s1 = \"{} N\"\nk_s2 = \"{} N\"\nonset = {:?}\nk_b = \"{} N m^2\"\nR_1 = \"{} m\"\nk_c1 = \"{} N/m\"\n\
+         k_h = \"0 Pa\"\nR_2 = \"{} m\"\nk_c2 = \"{} N/m\"\ncontact = \"barrier\"\n\
+         within = [1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]\ntile = \"tile.pyp\"\n",
+        fs::read_to_string(&path).unwrap(),
+        material.soft_stretch,
+        material.stiff_stretch,
+        material.onset,
+        material.bending,
+        one.radius,
+        one.stiffness,
+        two.radius,
+        two.stiffness
+    );
+    fs::write(&path, text).unwrap();
+    fs::write(folder.join("tile.pyp"), write_pattern(&tile)).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_tile_is_tested_and_says_what_it_cannot_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = write_woven_card(folder.path());
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let output = wale(&[&["lab"], arguments, &[&card, "--by", "tile", "--json"]].concat());
+        assert!(output.status.success(), "{arguments:?}: {}", error(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let pulled = json(&["strip", "--to", "3 %", "--direction", "weft", "--direction", "warp"]);
+    let number = |value: &serde_json::Value, at: usize, key: &str| value["results"][at][key].as_f64().unwrap();
+    // A balanced plain weave is the same along weft and warp.
+    let [weft, warp] = [0, 1].map(|at| number(&pulled, at, "line_force_N_per_m"));
+    assert!(weft > 1.0 && (weft / warp - 1.0).abs() < 1e-3, "{weft} {warp}");
+    let bent = json(&["kes-bending", "--direction", "weft"]);
+    // Each metre of it has a thousand yarns.
+    let rods = wale_lab::yarn_tile::RodMaterial::solid_rod(0.2e-3, 1e7, 10.0).bending / 1e-3;
+    let ratio = number(&bent, 0, "B_N_m") / rods;
+    assert!(ratio > 0.5 && ratio < 1.5, "{ratio}");
+    let cases: [(&[&str], i32, &str); 5] = [
+        (&["lab", "drape", &card, "--by", "tile"], 2, "nothing of it can hang"),
+        (&["lab", "kes-shear", &card, "--by", "contacts"], 2, "use --by tile"),
+        (&["lab", "curl", &card, "--by", "shell"], 2, "flat at rest"),
+        (&["lab", "strip", &card, "--by", "yarns"], 3, "swatch.toml is not there"),
+        (&["lab", "cantilever", &card, "--by", "tile", "--areal-mass", "0 kg/m^2"], 2, "must be positive"),
+    ];
+    for (arguments, code, says) in cases {
+        let output = wale(arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", error(&output));
+        assert!(error(&output).contains(says), "{says}: {}", error(&output));
+    }
+    fs::remove_file(folder.path().join("tile.pyp")).unwrap();
+    let output = wale(&["lab", "kes-tensile", "--by", "tile", &card]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(error(&output).contains("tile.pyp is not there"), "{}", error(&output));
+}
+
+#[test]
+fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, other) = (folder.path().join("one.toml"), folder.path().join("other.toml"));
+    write_card(&one);
+    write_card(&other);
+    let text = fs::read_to_string(&other).unwrap().replace("2000.0 N/m", "1500.0 N/m");
+    fs::write(&other, text).unwrap();
+    let fabrics = [one.to_str().unwrap(), other.to_str().unwrap()];
+    let test = [&["lab", "kes-tensile"], &fabrics[..], &["--direction", "weft", "--direction", "warp"]].concat();
+    let with = |more: &[&'static str]| [&test[..], more].concat();
+    let here = wale(&test);
+    assert!(here.status.success(), "{}", error(&here));
+    let files = |name: &str| -> Vec<String> {
+        let out = folder.path().join(name).with_extension("lab");
+        [".csv", ".svg", ".json"].map(|s| fs::read_to_string(out.join(format!("kes-tensile{s}"))).unwrap()).to_vec()
+    };
+    let written = [files("one"), files("other")];
+    for name in ["one", "other"] {
+        fs::remove_dir_all(folder.path().join(name).with_extension("lab")).unwrap();
+    }
+
+    // A question for each fabric and direction, which carries its card.
+    let asked = wale(&with(&["--ask"]));
+    let questions = String::from_utf8(asked.stdout).unwrap();
+    assert_eq!(questions.lines().count(), 4);
+    fs::remove_file(&one).unwrap();
+    let answers: Vec<String> = questions
+        .lines()
+        .map(|question| {
+            let output = told(&["lab", "--answer", "--threads", "1"], question);
+            assert!(output.status.success(), "{}", error(&output));
+            String::from_utf8(output.stdout).unwrap()
+        })
+        .collect();
+    write_card(&one);
+
+    // One is lost, one comes twice.
+    let some = [&answers[2][..], &answers[0], &answers[2], &answers[3]].concat();
+    let rest = told(&with(&["--ask", "--tell", "-"]), &some);
+    assert_eq!(String::from_utf8_lossy(&rest.stdout).trim_end(), questions.lines().nth(1).unwrap());
+    let lost = told(&with(&["--tell", "-"]), &some);
+    assert_eq!(lost.status.code(), Some(3));
+    assert!(error(&lost).contains("one.toml: not all questions are answered"), "{}", error(&lost));
+    assert_eq!(files("other"), written[1]);
+    assert!(!folder.path().join("one.lab").exists());
+    let all = told(&with(&["--tell", "-", "--force"]), &answers.concat());
+    assert!(all.status.success(), "{}", error(&all));
+    assert_eq!(all.stdout, here.stdout);
+    assert_eq!([files("one"), files("other")], written);
+
+    // What answers another question, or the same one differently, is refused with its line.
+    let foreign = answers[0].replacen("\"id\":\"", "\"id\":\"0", 1);
+    let changed = answers[0].replacen("LT", "TL", 1);
+    for (bad, says) in [
+        (format!("{}{foreign}", answers[0]), "standard input:2: this answers another question"),
+        (format!("{}{changed}", answers[0]), "standard input:2: this question was answered before"),
+        ("{\"id\":".to_owned(), "standard input:1:"),
+    ] {
+        let output = told(&with(&["--tell", "-", "--force"]), &bad);
+        assert_eq!(output.status.code(), Some(3), "{}", error(&output));
+        assert!(error(&output).contains(says), "{says}: {}", error(&output));
+    }
+    // As is a question that was changed, or that another version asks.
+    let question = questions.lines().next().unwrap();
+    for (bad, says) in [
+        (question.replacen("Suiting", "Shirting", 1), "changed on its way"),
+        (question.replacen("\"wale\":\"", "\"wale\":\"9", 1), "use the same version"),
+        (question.replacen("\"question\":", "\"riddle\":", 1), "riddle"),
+    ] {
+        let output = told(&["lab", "--answer"], &bad);
+        assert_eq!(output.status.code(), Some(3), "{}", error(&output));
+        assert!(error(&output).contains(says), "{says}: {}", error(&output));
+    }
+    let output = wale(&with(&["--out", "somewhere"]));
+    assert_eq!(output.status.code(), Some(2));
+    assert!(error(&output).contains("folder of one fabric"), "{}", error(&output));
+}
+
+#[test]
+fn a_limp_drape_on_a_coarse_mesh_is_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = folder.path().join("card.toml");
+    write_card(&card);
+    let card = card.to_str().unwrap();
+    // (B/W)^(1/3) is 8 and 80 mm.
+    for (bending, warned) in [("0.01 gf cm^2/cm", true), ("10 gf cm^2/cm", false)] {
+        let arguments = ["lab", "drape", card, "--edge", "20 mm", "--starts", "1", "--force", "--bending", bending];
+        let output = wale(&arguments);
+        assert!(output.status.success(), "{}", error(&output));
+        assert_eq!(String::from_utf8_lossy(&output.stdout).contains("WARNING"), warned, "{bending}");
+    }
 }
 
 #[test]

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::fabric_fit::fit_fabric;
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::of_fabric::fit_shell;
 use wale_lab::yarn_fit::gradients::GradientSettings;
 use wale_lab::yarn_fit::of_fabric::{Ablation, yarn_problem};
 use wale_lab::yarn_fit::problem::Here;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Failure> {
     let begun = Instant::now();
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette/fabric.toml");
     let fabric = FabricFile::read(&file)?;
-    let shell = fit_fabric(&fabric, &MembraneFitSettings::default())?;
+    let shell = fit_shell(&fabric, &MembraneFitSettings::default())?;
     let problem = yarn_problem(&fabric, &shell, Ablation::default())?;
     println!(
         "shell and tile: {:.1} s; {} vertices, {} threads",

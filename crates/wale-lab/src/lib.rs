@@ -9,6 +9,8 @@ pub mod network_fit;
 pub mod register;
 pub mod report;
 pub mod shell;
+pub mod swatch_test;
+pub mod uniform_test;
 pub mod virtual_test;
 pub mod yarn_fit;
 pub mod yarn_tile;

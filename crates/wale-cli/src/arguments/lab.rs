@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
-use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as PlainError, StrDeserializer};
+use serde::{Deserialize, Serialize};
 use wale::scene::dimensions::{Angle, Length, Ratio};
 use wale::scene::units::{Any, Bounds, Dimension, Positive, Quantity};
 use wale_lab::card_file::SheetBending;
@@ -15,14 +15,22 @@ use super::Results;
 
 /// `wale lab`
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, arg_required_else_help = true)]
 pub struct Lab {
     /// The test.
     #[command(subcommand)]
-    pub test: Test,
+    pub test: Option<Test>,
+    /// Answer questions of `--ask`, JSON lines of standard input, and print the answers
+    #[arg(long)]
+    pub answer: bool,
+    /// Threads for answers; all cores if left out
+    #[arg(long, requires = "answer", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
 }
 
 /// Virtual textile tests.
-#[derive(Debug, Subcommand)]
+#[derive(Clone, Debug, Subcommand, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Test {
     /// A swatch between clamps, 10 × 6 cm to 5 N
     Stretch(Stretch),
@@ -45,17 +53,108 @@ pub enum Test {
     /// Bias extension: shear force by angle
     BiasExtension(BiasExtension),
     /// FAST-2 and FAST-3: bending, extension at 5, 20, 100 gf/cm, formability, shear rigidity
-    Fast(Common),
+    Fast(Plain),
+    /// Curl of a free swatch: curvature of its edges, and to which side
+    Curl(Free),
+    /// Relaxation shrinkage: from the size as knitted to the size at rest
+    Relaxation(Free),
+}
+
+impl Test {
+    /// What it shares with all.
+    pub fn common(&self) -> &Common {
+        match self {
+            Self::Stretch(of) | Self::Strip(of) => &of.directed.common,
+            Self::KesTensile(of) | Self::KesShear(of) | Self::KesBending(of) => &of.common,
+            Self::Cantilever(of) => &of.directed.common,
+            Self::PearLoop(of) => &of.directed.common,
+            Self::Drape(of) => &of.common,
+            Self::PictureFrame(of) => &of.directed.common,
+            Self::BiasExtension(of) => &of.common,
+            Self::Fast(of) => &of.common,
+            Self::Curl(of) | Self::Relaxation(of) => &of.common,
+        }
+    }
+
+    /// Directions that were asked for, of a test that has one.
+    pub fn directions(&mut self) -> Option<&mut Vec<f64>> {
+        match self {
+            Self::Stretch(of) | Self::Strip(of) => Some(&mut of.directed.direction),
+            Self::KesTensile(of) | Self::KesShear(of) | Self::KesBending(of) => Some(&mut of.direction),
+            Self::Cantilever(of) => Some(&mut of.directed.direction),
+            Self::PearLoop(of) => Some(&mut of.directed.direction),
+            Self::PictureFrame(of) => Some(&mut of.directed.direction),
+            Self::Drape(_) | Self::BiasExtension(_) | Self::Fast(_) | Self::Curl(_) | Self::Relaxation(_) => None,
+        }
+    }
+
+    /// Its name on the command line.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Stretch(_) => "stretch",
+            Self::Strip(_) => "strip",
+            Self::KesTensile(_) => "kes-tensile",
+            Self::KesShear(_) => "kes-shear",
+            Self::KesBending(_) => "kes-bending",
+            Self::Cantilever(_) => "cantilever",
+            Self::PearLoop(_) => "pear-loop",
+            Self::Drape(_) => "drape",
+            Self::PictureFrame(_) => "picture-frame",
+            Self::BiasExtension(_) => "bias-extension",
+            Self::Fast(_) => "fast",
+            Self::Curl(_) => "curl",
+            Self::Relaxation(_) => "relaxation",
+        }
+    }
+}
+
+/// A test that has no choice of its own.
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Plain {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// A swatch that nothing holds.
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Free {
+    #[allow(missing_docs)]
+    #[command(flatten)]
+    pub common: Common,
+    /// Columns of loops of the swatch
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    pub columns: u32,
+    /// Rows of loops
+    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    pub rows: u32,
 }
 
 /// What all tests share.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Common {
-    /// Fabric file whose card `wale fit` has made, or a card
-    pub fabric: PathBuf,
+    /// Fabric files that `wale fit` has fitted, or cards; by contacts and by yarns, scenes too
+    #[arg(required = true, value_name = "FABRIC")]
+    #[serde(skip)]
+    pub fabrics: Vec<PathBuf>,
+    /// Model of the fabric that is tested; the one that suits the test best if left out, mostly the shell
+    #[arg(long, value_enum, value_name = "MODEL")]
+    pub by: Option<By>,
     #[allow(missing_docs)]
     #[command(flatten)]
+    #[serde(skip)]
     pub results: Results,
+    /// Print the test as questions, JSON lines, one for each fabric and direction; with `--tell`, those without an answer
+    #[arg(long)]
+    #[serde(skip)]
+    pub ask: bool,
+    /// Take answers of `wale lab --answer`, JSON lines of a file or of standard input (`-`), in place of testing
+    #[arg(long, value_name = "FILE")]
+    #[serde(skip)]
+    pub tell: Option<PathBuf>,
     /// Mass by area in place of the card's, such as "170 g/m^2"
     #[arg(long, value_name = "MASS", value_parser = positive::<ArealMass>)]
     pub areal_mass: Option<f64>,
@@ -64,8 +163,23 @@ pub struct Common {
     pub bending: Option<f64>,
 }
 
+/// What stands for a fabric.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum By {
+    /// A thin shell
+    Shell,
+    /// A periodic tile of yarns in full contact
+    Tile,
+    /// A periodic tile of the contact model
+    Contacts,
+    /// All yarns of a specimen, in the contact model, with friction
+    Yarns,
+}
+
 /// A test that has a direction and no other choice.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Directed {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -76,7 +190,8 @@ pub struct Directed {
 }
 
 /// Of a rectangular specimen.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Size {
     /// Length of the specimen, such as "10 cm"
     #[arg(long, value_parser = positive::<Length>)]
@@ -87,7 +202,8 @@ pub struct Size {
 }
 
 /// `wale lab stretch`, `wale lab strip`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Stretch {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -104,7 +220,8 @@ pub struct Stretch {
 }
 
 /// `wale lab cantilever`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Cantilever {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -118,7 +235,8 @@ pub struct Cantilever {
 }
 
 /// `wale lab pear-loop`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PearLoop {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -138,7 +256,8 @@ pub struct PearLoop {
 }
 
 /// Which way weight pulls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Gravity {
     /// The loop hangs from the clamps
     Down,
@@ -149,7 +268,8 @@ pub enum Gravity {
 }
 
 /// How clamps hold a strip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Clamps {
     /// The strip leaves them towards each other
     Facing,
@@ -158,7 +278,8 @@ pub enum Clamps {
 }
 
 /// `wale lab drape`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Drape {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -178,7 +299,8 @@ pub struct Drape {
 }
 
 /// `wale lab picture-frame`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PictureFrame {
     #[allow(missing_docs)]
     #[command(flatten)]
@@ -192,7 +314,8 @@ pub struct PictureFrame {
 }
 
 /// `wale lab bias-extension`
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct BiasExtension {
     #[allow(missing_docs)]
     #[command(flatten)]

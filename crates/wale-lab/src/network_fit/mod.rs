@@ -8,6 +8,6 @@ mod pull;
 mod tests;
 
 pub use fit::{NetworkFit, NetworkFitError, NetworkFitSettings, fit_network};
-pub use of_fabric::{SceneFitError, fit_scene};
+pub use of_fabric::{SceneFitError, fit_scene, relaxed_reference};
 pub use problem::{NetworkEvaluation, NetworkProblem};
-pub use pull::{NetworkPullSettings, SizeSlopes, pull_network};
+pub use pull::{NetworkPull, NetworkPullSettings, SizeSlopes, pull_network};

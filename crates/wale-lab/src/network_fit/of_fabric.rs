@@ -1,7 +1,9 @@
 //! The contact model of a fabric file whose structure is a chart: a scene of it with the stiffnesses that its tests tell.
 
 use thiserror::Error;
-use wale::model::FabricCard;
+use wale::dynamics::stretched_tile::{StretchError, TileReference};
+use wale::dynamics::tile_equilibrium::{TileSettings, relax_from_starts};
+use wale::model::{FabricCard, KnitCard, Network};
 use wale::pattern::{ChartError, knit};
 use wale::scene::Scene;
 
@@ -26,6 +28,9 @@ pub enum SceneFitError {
     /// Nothing was fitted.
     #[error(transparent)]
     Fit(#[from] NetworkFitError),
+    /// The repeat does not come to rest.
+    #[error(transparent)]
+    Pull(#[from] StretchError),
 }
 
 /// Most loops of a repeat.
@@ -39,6 +44,29 @@ const STARTS: [[f64; 6]; 3] = [[1.0; 6], [1.0, 8.0, 1.0, 1.0, 30.0, 10.0], [1.0,
 /// # Errors
 /// [`SceneFitError`].
 pub fn fit_scene(scene: &Scene, targets: &[Target]) -> Result<(Scene, NetworkFit), SceneFitError> {
+    let (network, card) = repeat_of(scene)?;
+    let settings = NetworkFitSettings { starts: STARTS.to_vec(), ..NetworkFitSettings::default() };
+    let found = fit_network(&network, &scene.yarns, card, targets, &settings)?;
+    let fitted = Scene { yarns: found.yarns.clone(), fabric: FabricCard::from(&found.card), ..scene.clone() };
+    Ok((fitted, found))
+}
+
+/// Starts from which a repeat is relaxed, and the one of least energy taken.
+const STARTS_AT_REST: usize = 3;
+
+/// The repeat of a scene's chart with its own stiffnesses, relaxed: what is pulled by [`super::NetworkPull`].
+///
+/// # Errors
+/// [`SceneFitError`]; [`SceneFitError::Pull`] if it does not come to rest.
+pub fn relaxed_reference(scene: &Scene) -> Result<TileReference, SceneFitError> {
+    let (network, card) = repeat_of(scene)?;
+    let settings = TileSettings::of(card);
+    let rest = relax_from_starts(&network, &scene.yarns, card, &settings, STARTS_AT_REST).swap_remove(0);
+    Ok(TileReference::new(&network, &scene.yarns, card, &settings, rest)?)
+}
+
+/// The smallest repeat of a scene's chart as a tile, and the card.
+fn repeat_of(scene: &Scene) -> Result<(Network, &KnitCard), SceneFitError> {
     let (Some(chart), Some(card)) = (scene.structure.chart(), scene.fabric.knit()) else {
         return Err(SceneFitError::NoChart);
     };
@@ -47,9 +75,5 @@ pub fn fit_scene(scene: &Scene, targets: &[Target]) -> Result<(Scene, NetworkFit
     if loops > MOST_LOOPS {
         return Err(SceneFitError::TooLarge { loops });
     }
-    let network = knit::tile(&repeat, card)?;
-    let settings = NetworkFitSettings { starts: STARTS.to_vec(), ..NetworkFitSettings::default() };
-    let found = fit_network(&network, &scene.yarns, card, targets, &settings)?;
-    let fitted = Scene { yarns: found.yarns.clone(), fabric: FabricCard::from(&found.card), ..scene.clone() };
-    Ok((fitted, found))
+    Ok((knit::tile(&repeat, card)?, card))
 }

@@ -27,6 +27,36 @@ const SHORTEST: f64 = 1e-5;
 /// Derivatives of the logarithms of a relaxed tile's periods by its stiffnesses.
 pub type SizeSlopes = [[f64; TileStiffness::COUNT]; 2];
 
+/// A tile on its way along one direction, free to narrow.
+#[derive(Debug)]
+pub struct NetworkPull {
+    tile: StretchedTile,
+    from: f64,
+    settings: NetworkPullSettings,
+}
+
+impl NetworkPull {
+    /// A relaxed tile that has not been stretched yet, along a direction at an angle \[rad\] from the course.
+    ///
+    /// # Errors
+    /// [`StretchError`].
+    pub fn new(reference: &TileReference, angle: f64, settings: &NetworkPullSettings) -> Result<Self, StretchError> {
+        let mut tile = StretchedTile::new(reference, angle, true)?;
+        let from = tile.solve(0.0, 0.0)?.stretch;
+        Ok(Self { tile, from, settings: *settings })
+    }
+
+    /// Stretches it further, or lets it go back, without stress across.
+    ///
+    /// # Errors
+    /// [`StretchError`].
+    pub fn to(&mut self, stretch: f64) -> Result<StretchedEquilibrium, StretchError> {
+        let found = advance(&mut self.tile, self.from, stretch, &self.settings)?;
+        self.from = stretch;
+        Ok(found)
+    }
+}
+
 /// Pulls a relaxed tile along a direction at an angle \[rad\] from the course to each of the rising stretches, without stress across.
 ///
 /// With `size_slopes` ([`TileReference::size_slopes`]) the answers have derivatives by the stiffnesses in the order of
@@ -41,16 +71,14 @@ pub fn pull_network(
     size_slopes: Option<&SizeSlopes>,
     settings: &NetworkPullSettings,
 ) -> Result<Vec<Answer<{ TileStiffness::COUNT }>>, StretchError> {
-    let mut tile = StretchedTile::new(reference, angle, true)?;
-    let mut from = tile.solve(0.0, 0.0)?.stretch;
+    let mut pulled = NetworkPull::new(reference, angle, settings)?;
     let mut answers = Vec::with_capacity(stretches.len());
     for &to in stretches {
-        let found = advance(&mut tile, from, to, settings)?;
-        from = to;
+        let found = pulled.to(to)?;
         let point = StretchPoint { stretch: to, force: found.stress, compression: found.compression };
         let (mut stress_slope, mut compression_slope) = ([0.0; TileStiffness::COUNT], [0.0; TileStiffness::COUNT]);
         if let Some(size_slopes) = size_slopes {
-            let slopes = tile.slopes(Some(size_slopes))?;
+            let slopes = pulled.tile.slopes(Some(size_slopes))?;
             (stress_slope, compression_slope) = (slopes.stress, slopes.compression);
         }
         answers.push(Answer { point, stress_slope, compression_slope });

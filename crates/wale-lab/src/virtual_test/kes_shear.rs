@@ -21,7 +21,7 @@ pub struct KesShearTest {
 }
 
 /// Angles between which the slope is taken \[rad\].
-const SLOPE: [f64; 2] = [0.5 * DEG, 5.0 * DEG];
+pub(crate) const SLOPE: [f64; 2] = [0.5 * DEG, 5.0 * DEG];
 
 impl Default for KesShearTest {
     /// 20 cm wide, 5 cm long, 10 gf/cm along the weft, ±8° in steps of half a degree.
@@ -42,6 +42,19 @@ pub struct KesShearResult {
     pub points: Vec<[f64; 3]>,
 }
 
+impl KesShearResult {
+    /// From points to either side, with angle and force positive on both.
+    pub(crate) fn of_sides(one: &[[f64; 3]], other: &[[f64; 3]]) -> Self {
+        let slope = |side: &[[f64; 3]]| {
+            let at = |angle: f64| interpolate(side, angle);
+            (at(SLOPE[1]) - at(SLOPE[0])) / (SLOPE[1] - SLOPE[0])
+        };
+        let rigidity = 0.5 * (slope(one) + slope(other));
+        let points = other.iter().skip(1).rev().map(|[angle, force, stretch]| [-angle, -force, *stretch]);
+        Self { rigidity, points: points.chain(one.iter().copied()).collect() }
+    }
+}
+
 impl KesShearTest {
     /// Shears a fabric. The clamp moves by the length at rest times the tangent of the angle.
     ///
@@ -55,13 +68,7 @@ impl KesShearTest {
         }
         let one = self.side(card, 1.0)?;
         let other = self.side(card, -1.0)?;
-        let slope = |side: &[[f64; 3]]| {
-            let at = |angle: f64| interpolate(side, angle);
-            (at(SLOPE[1]) - at(SLOPE[0])) / (SLOPE[1] - SLOPE[0])
-        };
-        let rigidity = 0.5 * (slope(&one) + slope(&other));
-        let points = other.iter().skip(1).rev().map(|[angle, force, stretch]| [-angle, -force, *stretch]);
-        Ok(KesShearResult { rigidity, points: points.chain(one.iter().copied()).collect() })
+        Ok(KesShearResult::of_sides(&one, &other))
     }
 
     /// Points to one side, with angle and force positive there.

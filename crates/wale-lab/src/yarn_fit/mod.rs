@@ -16,6 +16,6 @@ mod target;
 
 pub use objective::{BendingTarget, YarnFitError, add_residuals, errors};
 pub use progress::{Progress, Step};
-pub use pull::{Answer, PullSettings, pull};
+pub use pull::{Answer, PullSettings, TilePull, pull};
 pub use space::RodSpace;
 pub use target::Target;

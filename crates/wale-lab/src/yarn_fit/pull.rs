@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::shell::StretchPoint;
 use crate::yarn_tile::{
-    CoarseDeformation, EquilibriumSettings, RodMaterial, RodParameter, TileError, TileSolver, YarnTile,
+    CoarseDeformation, EquilibriumSettings, RodMaterial, RodParameter, TileEquilibrium, TileError, TileSolver, YarnTile,
 };
 
 /// A point of a uniform stretch with its derivatives by `P` numbers of the model.
@@ -38,6 +38,52 @@ impl Default for PullSettings {
     }
 }
 
+/// A tile on its way along one direction, free to narrow.
+#[derive(Debug)]
+pub struct TilePull {
+    solver: TileSolver,
+    found: TileEquilibrium,
+    angle: f64,
+    stretch: f64,
+    settings: PullSettings,
+}
+
+impl TilePull {
+    /// A tile that has not been stretched yet, along a direction at an angle \[rad\] from the weft.
+    ///
+    /// # Errors
+    /// [`TileError`].
+    pub fn new(
+        tile: &YarnTile,
+        material: &RodMaterial,
+        angle: f64,
+        settings: &PullSettings,
+    ) -> Result<Self, TileError> {
+        let mut solver = TileSolver::free_compression(tile, material, settings.equilibrium)?;
+        let found = solver.solve(&CoarseDeformation::stretched(angle, 0.0, 0.0))?;
+        Ok(Self { solver, found, angle, stretch: 0.0, settings: *settings })
+    }
+
+    /// Stretches it further, or lets it go back, without stress across.
+    ///
+    /// # Errors
+    /// [`TileError`]; [`TileError::NoEquilibrium`] where more force is left than the settings accept.
+    pub fn to(&mut self, stretch: f64) -> Result<&TileEquilibrium, TileError> {
+        let from = self.stretch;
+        let steps = ((stretch - from).abs() / self.settings.largest_step).ceil().max(1.0) as u32;
+        for step in 1..=steps {
+            let next = from + (stretch - from) * f64::from(step) / f64::from(steps);
+            let compression = self.found.deformation.compression();
+            self.found = self.solver.solve(&CoarseDeformation::stretched(self.angle, next, compression))?;
+        }
+        self.stretch = stretch;
+        if self.found.residual > self.settings.accepted {
+            return Err(TileError::NoEquilibrium { residual: self.found.residual });
+        }
+        Ok(&self.found)
+    }
+}
+
 /// Pulls a tile along a direction at an angle \[rad\] from the weft to each of the rising stretches, without stress across.
 ///
 /// Differs from the paper: there the compression of no stress is found at both ends of the range, and interpolated between; here it
@@ -53,25 +99,15 @@ pub fn pull(
     with_slopes: bool,
     settings: &PullSettings,
 ) -> Result<Vec<Answer<{ RodParameter::COUNT }>>, TileError> {
-    let mut solver = TileSolver::free_compression(tile, material, settings.equilibrium)?;
-    let mut found = solver.solve(&CoarseDeformation::stretched(angle, 0.0, 0.0))?;
-    let (mut from, mut answers) = (0.0, Vec::with_capacity(stretches.len()));
+    let mut pulled = TilePull::new(tile, material, angle, settings)?;
+    let mut answers = Vec::with_capacity(stretches.len());
     for &to in stretches {
-        let steps = ((to - from).abs() / settings.largest_step).ceil().max(1.0) as u32;
-        for step in 1..=steps {
-            let stretch = from + (to - from) * f64::from(step) / f64::from(steps);
-            let compression = found.deformation.compression();
-            found = solver.solve(&CoarseDeformation::stretched(angle, stretch, compression))?;
-        }
-        from = to;
-        if found.residual > settings.accepted {
-            return Err(TileError::NoEquilibrium { residual: found.residual });
-        }
+        let found = pulled.to(to)?;
         let point =
             StretchPoint { stretch: to, force: found.stress.stretch, compression: found.deformation.compression() };
         let (mut stress_slope, mut compression_slope) = ([0.0; RodParameter::COUNT], [0.0; RodParameter::COUNT]);
         if with_slopes {
-            let slopes = solver.slopes()?;
+            let slopes = pulled.solver.slopes()?;
             (stress_slope, compression_slope) = (slopes.stress, slopes.compression);
         }
         answers.push(Answer { point, stress_slope, compression_slope });

@@ -31,6 +31,23 @@ impl CoarseDeformation {
         deformation
     }
 
+    /// Any even deformation of the plane by its gradient `F`, whose rotation `R` is taken out: `F = R U`, and a tile is given `U`.
+    /// Stretch is measured along a direction at an angle \[rad\]. Returns `R` beside it.
+    ///
+    /// # Panics
+    /// If `F` turns the plane inside out.
+    #[must_use]
+    pub fn of_gradient(gradient: [[f64; 2]; 2], angle: f64) -> (Self, [[f64; 2]; 2]) {
+        let [[a, b], [c, d]] = gradient;
+        assert!(a * d - b * c > 0.0, "a deformation turns the plane inside out");
+        // Of two by two numbers, R turns by the angle whose tangent is (F21 − F12)/(F11 + F22).
+        let size = (a + d).hypot(c - b);
+        let (cos, sin) = ((a + d) / size, (c - b) / size);
+        let across = 0.5 * (cos * b + sin * d - sin * a + cos * c);
+        let plane = [[cos * a + sin * c, across], [across, cos * d - sin * b]];
+        (Self { plane, direction: [angle.cos(), angle.sin()], curvature: 0.0 }, [[cos, -sin], [sin, cos]])
+    }
+
     /// The same, bent with a curvature \[1/m\] along its direction.
     #[must_use]
     pub fn bent(self, curvature: f64) -> Self {
@@ -147,6 +164,21 @@ mod tests {
             assert!((deformation.stretch() - 0.3).abs() < 1e-14 && (deformation.compression() - 0.2).abs() < 1e-14);
             assert!((deformation.determinant() - 1.3 * 0.8).abs() < 1e-14);
             assert!((deformation.plane[0][1] - deformation.plane[1][0]).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_gradient_is_a_stretch_that_is_turned() {
+        for f in [[[1.2, 0.4], [-0.1, 0.8]], [[1.0, 0.0], [0.0, 1.0]], [[-0.3, -1.1], [0.9, 0.2]]] {
+            let (deformation, r) = CoarseDeformation::of_gradient(f, 0.3);
+            let u = deformation.plane;
+            assert!((r[0][0] * r[1][1] - r[0][1] * r[1][0] - 1.0).abs() < 1e-14);
+            assert!((u[0][1] - u[1][0]).abs() < 1e-15 && u[0][0] + u[1][1] > 0.0);
+            for i in 0..2 {
+                for j in 0..2 {
+                    assert!((r[i][0] * u[0][j] + r[i][1] * u[1][j] - f[i][j]).abs() < 1e-14, "{f:?}");
+                }
+            }
         }
     }
 

@@ -171,6 +171,12 @@ impl TileSolver {
         &self.system.tile
     }
 
+    /// The deformation that it is under.
+    #[must_use]
+    pub fn deformation(&self) -> CoarseDeformation {
+        self.system.deformation
+    }
+
     /// Brings the tile to rest under a deformation, from where it is. If compression is free, that of the deformation is where the
     /// search begins.
     ///

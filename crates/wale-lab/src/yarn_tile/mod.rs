@@ -17,7 +17,7 @@ mod soundness;
 mod stress;
 mod system;
 #[cfg(test)]
-mod test_tiles;
+pub(crate) mod test_tiles;
 #[cfg(test)]
 mod tests;
 mod tile;

@@ -15,6 +15,8 @@ pub struct CoarseStress {
     pub compression: f64,
     /// The part of both that the forces carry which keep yarns from sliding; nothing else is left inside a tile in equilibrium.
     pub reaction: [f64; 2],
+    /// All of it, `∂Ψ/∂F` by rows as the deformation gradient is.
+    pub plane: [[f64; 2]; 2],
 }
 
 impl CoarseStress {
@@ -25,7 +27,12 @@ impl CoarseStress {
     pub(super) fn gather(system: &TileSystem, displacement: &[f64]) -> Self {
         let rates = [system.deformation.stretch_rate(), system.deformation.compression_rate()];
         let area = system.tile.area();
-        let mut border = [0.0; 2];
+        let (mut border, mut plane) = ([0.0; 2], [[0.0; 2]; 2]);
+        let add = |plane: &mut [[f64; 2]; 2], f: [f64; 2], at: [f64; 2]| {
+            for (row, f) in plane.iter_mut().zip(f) {
+                row.iter_mut().zip(at).for_each(|(sum, x)| *sum += f * x / area);
+            }
+        };
         let mut net = vec![[0.0; 2]; system.tile.vertex_count()];
         system.for_each_force(displacement, |stencil, force| {
             for (a, image) in stencil.iter().enumerate() {
@@ -36,6 +43,7 @@ impl CoarseStress {
                     continue;
                 }
                 let periods = [0, 1].map(|axis| f64::from(image.shift[axis]) * system.tile.periods()[axis]);
+                add(&mut plane, f, periods);
                 for (sum, rate) in border.iter_mut().zip(&rates) {
                     let moved = times(rate, periods);
                     *sum += f[0] * moved[0] + f[1] * moved[1];
@@ -44,13 +52,14 @@ impl CoarseStress {
         });
         let mut reaction = [0.0; 2];
         for (f, x) in net.iter().zip(system.tile.vertices()) {
+            add(&mut plane, *f, [x[0], x[1]]);
             for (sum, rate) in reaction.iter_mut().zip(&rates) {
                 let moved = times(rate, [x[0], x[1]]);
                 *sum += f[0] * moved[0] + f[1] * moved[1];
             }
         }
         let reaction = reaction.map(|r| r / area);
-        Self { stretch: border[0] / area + reaction[0], compression: border[1] / area + reaction[1], reaction }
+        Self { stretch: border[0] / area + reaction[0], compression: border[1] / area + reaction[1], reaction, plane }
     }
 
     /// Second Piola-Kirchhoff stress `σ_s/(1 + s)` \[N/m\] [Sperl2022, section 7.3.1].

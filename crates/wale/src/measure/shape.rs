@@ -52,7 +52,7 @@ impl Shape {
         let area = wale_spacing * course_spacing;
         let [rows, columns] = [chart.rows, chart.columns];
         let is_edge = |at: usize, count: usize| {
-            let width = (EDGE * count as f64).ceil() as usize;
+            let width = Self::edge_loops(count);
             at < width || at + width >= count
         };
         Self {
@@ -64,6 +64,23 @@ impl Shape {
             side_edges: chart.mean_curvature(|_, column| is_edge(column, columns)),
             end_edges: chart.mean_curvature(|row, _| is_edge(row, rows)),
         }
+    }
+}
+
+impl Shape {
+    /// Outermost loops that count as an edge, of so many side by side.
+    #[must_use]
+    pub fn edge_loops(count: usize) -> usize {
+        (EDGE * count as f64).ceil() as usize
+    }
+
+    /// Mean curvature \[1/m\] along the courses by column, and along the wales by row.
+    #[must_use]
+    pub fn profiles(network: &Network, frame: &Frame) -> [Vec<f64>; 2] {
+        let chart = LoopCentres::new(network, frame);
+        let of_column = |k: usize| chart.mean_curvature(|_, column| column == k).course_per_m;
+        let of_row = |k: usize| chart.mean_curvature(|row, _| row == k).wale_per_m;
+        [(0..chart.columns).map(of_column).collect(), (0..chart.rows).map(of_row).collect()]
     }
 }
 
@@ -208,6 +225,9 @@ mod tests {
         assert!(shape.side_edges.course_per_m < -50.0, "{shape:?}");
         assert!(shape.end_edges.wale_per_m > 50.0, "{shape:?}");
         assert!(shape.end_edges.course_per_m.abs() < 0.5 * shape.side_edges.course_per_m.abs());
+        let [course, wale] = Shape::profiles(&network, &frame);
+        assert!((course.len(), wale.len()) == (30, 30) && Shape::edge_loops(30) == 5);
+        assert!(course[0] < -50.0 && wale[29] > 50.0 && course[15].abs() < 1e-6 && wale[15].abs() < 1e-6);
     }
 
     #[test]

@@ -10,12 +10,13 @@ use kuva::{
         render::Scene,
     },
 };
+use serde::{Deserialize, Serialize};
 
 /// Line colours, told apart also by those who see red and green alike (lightness differs).
 const COLORS: [&str; 7] = ["#20638f", "#cf5c36", "#6a994e", "#7b4b94", "#d9a426", "#3b3f4a", "#4fb0ae"];
 
 /// One line of a plot.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Name in the legend; an empty one is left out.
     pub name: String,
@@ -26,7 +27,7 @@ pub struct Series {
 }
 
 /// A pair of axes with its lines.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Label of the y axis, with its unit in brackets.
     pub y_label: String,
@@ -35,7 +36,7 @@ pub struct Panel {
 }
 
 /// Panels above each other that share their x axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Plot {
     /// Title above all.
     pub title: String,

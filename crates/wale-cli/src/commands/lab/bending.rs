@@ -1,20 +1,19 @@
 //! Tests that bend a fabric: KES bending, cantilever, pear loops.
 
 use wale::picture::Plot;
-use wale_lab::shell::ShellError;
 use wale_lab::virtual_test::pear_loop::{Clamps as LoopClamps, Hanging};
 use wale_lab::virtual_test::units::{DEG, GF_CM_PER_CM, GF_CM2_PER_CM, MM, PER_CM, UN_M};
 use wale_lab::virtual_test::{CantileverTest, KesBendingTest, PearLoopTest, cantilever as hang};
 
 use super::card::Card;
-use super::report::{Group, Number, Report, digits, direction_name};
-use super::{directions, in_directions, line};
+use super::failure::TestFailure;
+use super::report::{Group, Number, Report, digits, direction_name, heads};
+use super::{in_directions, line};
 use crate::arguments::lab::{Cantilever, Clamps, Directed, Gravity, PearLoop};
 
-pub fn kes_bending(card: &Card, of: &Directed) -> Result<Report, ShellError> {
-    let found = in_directions(&directions(&of.direction), |angle| {
-        KesBendingTest { angle, ..KesBendingTest::default() }.run(&card.shell)
-    })?;
+pub fn kes_bending(card: &Card, of: &Directed) -> Result<Report, TestFailure> {
+    let found =
+        in_directions(&of.direction, |angle| KesBendingTest { angle, ..KesBendingTest::default() }.run(&card.shell))?;
     let groups = found.iter().map(|(angle, found)| Group {
         name: direction_name(*angle),
         direction: Some(*angle),
@@ -27,10 +26,9 @@ pub fn kes_bending(card: &Card, of: &Directed) -> Result<Report, ShellError> {
         found.iter().flat_map(|(angle, found)| found.points.iter().map(|[k, m]| vec![angle.to_degrees(), *k, *m]));
     let series = found.iter().map(|(a, f)| line(*a, f.points.iter().map(|[k, m]| [k / PER_CM, m / GF_CM_PER_CM])));
     Ok(Report {
-        test: "kes-bending",
         what: "KES-FB2 pure bending, 1 cm long and 20 cm wide, to ±2.5 cm⁻¹".to_owned(),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "curvature [1/m]", "moment by width [N]"],
+        heads: heads(["direction [deg]", "curvature [1/m]", "moment by width [N]"]),
         rows: rows.collect(),
         plot: Plot::lines(&card.title, "curvature [1/cm]", "moment by width [gf·cm/cm]", &series.collect::<Vec<_>>()),
         remarks: vec![
@@ -40,12 +38,11 @@ pub fn kes_bending(card: &Card, of: &Directed) -> Result<Report, ShellError> {
     })
 }
 
-pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, ShellError> {
+pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, TestFailure> {
     let base = CantileverTest { slope: of.slope, ..CantileverTest::default() };
     let base = CantileverTest { width: of.width.unwrap_or(base.width), ..base };
-    let found = in_directions(&directions(&of.directed.direction), |angle| {
-        hang::run(&CantileverTest { angle, ..base }, &card.shell)
-    })?;
+    let found =
+        in_directions(&of.directed.direction, |angle| hang::run(&CantileverTest { angle, ..base }, &card.shell))?;
     let groups = found.iter().map(|(angle, found)| Group {
         name: direction_name(*angle),
         direction: Some(*angle),
@@ -64,14 +61,13 @@ pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, ShellError> {
         remarks.push("G = W c³ holds for a slope of 41.5° alone".to_owned());
     }
     Ok(Report {
-        test: "cantilever",
         what: format!(
             "cantilever (ASTM D1388), {} mm wide, to a slope of {}°",
             digits(base.width / MM),
             digits(of.slope / DEG)
         ),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "along [m]", "up [m]"],
+        heads: heads(["direction [deg]", "along [m]", "up [m]"]),
         rows: rows.collect(),
         plot: Plot::lines(&card.title, "from the edge [mm]", "height [mm]", &series.collect::<Vec<_>>()),
         remarks,
@@ -79,7 +75,7 @@ pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, ShellError> {
     })
 }
 
-pub fn pear_loop(card: &Card, of: &PearLoop) -> Result<Report, ShellError> {
+pub fn pear_loop(card: &Card, of: &PearLoop) -> Result<Report, TestFailure> {
     let default = PearLoopTest::default();
     let base = PearLoopTest {
         length: of.size.length.unwrap_or(default.length),
@@ -96,9 +92,7 @@ pub fn pear_loop(card: &Card, of: &PearLoop) -> Result<Report, ShellError> {
         distances: if of.distance.is_empty() { default.distances.clone() } else { of.distance.clone() },
         ..default
     };
-    let found = in_directions(&directions(&of.directed.direction), |angle| {
-        PearLoopTest { angle, ..base.clone() }.run(&card.shell)
-    })?;
+    let found = in_directions(&of.directed.direction, |angle| PearLoopTest { angle, ..base.clone() }.run(&card.shell))?;
     let groups = found.iter().map(|(angle, found)| {
         let (first, last) = (found.points[0], found.points[found.points.len() - 1]);
         Group {
@@ -126,14 +120,13 @@ pub fn pear_loop(card: &Card, of: &PearLoop) -> Result<Report, ShellError> {
         Hanging::Weightless => "without weight",
     };
     Ok(Report {
-        test: "pear-loop",
         what: format!(
             "pear loops of {} × {} mm, {hanging}, clamps {clamps}",
             digits(base.length / MM),
             digits(base.width / MM)
         ),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "distance of clamps [m]", "height [m]", "width [m]", "h/p [-]"],
+        heads: heads(["direction [deg]", "distance of clamps [m]", "height [m]", "width [m]", "h/p [-]"]),
         rows: rows.collect(),
         plot: Plot::lines(&card.title, "distance of the clamps [mm]", "h/p", &series.collect::<Vec<_>>()),
         remarks: Vec::new(),

@@ -1,18 +1,13 @@
 //! The card that a test is made with.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use serde::Deserialize;
-use serde::de::IgnoredAny;
 use wale::energy::{BendingStiffness, MembraneStiffness};
-use wale::scene::TextFile;
 use wale_lab::card_file::CardFile;
-use wale_lab::fabric_file::{FabricFile, FabricFileError};
 use wale_lab::shell::ShellCard;
 
 use crate::arguments::lab::Common;
 use crate::exit::{Code, Failure};
-use crate::opened::scene_failure;
 
 /// Beyond this factor a stiffness counts as not determined.
 const DETERMINED: f64 = 3.0;
@@ -37,32 +32,11 @@ pub struct Needs {
     pub mass: bool,
 }
 
-/// Only these tell a card from a fabric file.
-#[derive(Deserialize)]
-struct Peek {
-    shell: Option<IgnoredAny>,
-}
-
-/// Finds the card of a fabric file, or reads the card that is given.
+/// Makes a card ready for a test.
 ///
 /// # Errors
-/// If there is none, it is damaged, or it lacks what the test needs.
-pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
-    let path = &arguments.fabric;
-    let file = TextFile::read(path, "fabric file or card").map_err(scene_failure)?;
-    let peek: Peek = file.parse().map_err(scene_failure)?;
-    let (file, place) = if peek.shell.is_some() {
-        (file, path.clone())
-    } else {
-        // That it is a fabric file at all is said before what is missing beside it.
-        FabricFile::read(path).map_err(|error| match error {
-            FabricFileError::Fabric(error) => scene_failure(error),
-            FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
-        })?;
-        let fitted = fitted(path)?;
-        (TextFile::read(&fitted, "card").map_err(scene_failure)?, fitted)
-    };
-    let card = CardFile::of(&file).map_err(scene_failure)?;
+/// If it lacks what the test needs.
+pub fn card(card: CardFile, place: &Path, arguments: &Common, needs: Needs) -> Result<Card, Failure> {
     let lacks = |what: &str, option: &str| {
         let mend = "add [[bending]] loops and areal_mass to the fabric file and fit it again";
         Failure::new(
@@ -100,19 +74,4 @@ pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
     };
     shell.check().map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", place.display())))?;
     Ok(Card { title: card.title, shell, remarks })
-}
-
-/// Where `wale fit` puts the card of a fabric file.
-fn fitted(fabric: &Path) -> Result<PathBuf, Failure> {
-    let card = fabric.with_extension("fit").join("card.toml");
-    if card.is_file() {
-        return Ok(card);
-    }
-    let message = format!(
-        "{} has no card yet, {} is not there: run `wale fit {}` first",
-        fabric.display(),
-        card.display(),
-        fabric.display()
-    );
-    Err(Failure::new(Code::BadInput, message))
 }

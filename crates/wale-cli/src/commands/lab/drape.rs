@@ -5,30 +5,32 @@ use std::fmt::Write;
 
 use rayon::prelude::*;
 use wale::picture::{Plot, Series};
-use wale_lab::shell::ShellError;
 use wale_lab::virtual_test::units::{CM2, MM, PERCENT};
 use wale_lab::virtual_test::{DrapeResult, DrapeTest};
 
 use super::card::Card;
-use super::report::{Extra, Group, Number, Report, digits};
+use super::failure::TestFailure;
+use super::report::{Extra, Group, Number, Report, digits, heads};
 use super::sheet_picture::sheet_picture;
 use crate::arguments::lab::Drape;
 
 /// Files beside table, plot and numbers.
 pub const EXTRAS: [&str; 2] = ["-sheet.svg", "-sheet.obj"];
 
-pub fn drape(card: &Card, of: &Drape) -> Result<Report, ShellError> {
+pub fn drape(card: &Card, of: &Drape) -> Result<Report, TestFailure> {
     let test = DrapeTest { specimen: of.specimen, support: of.support, edge: of.edge, ..DrapeTest::default() };
     let found: Vec<DrapeResult> = (1..=of.starts)
         .into_par_iter()
         .map(|start| DrapeTest { start, ..test }.run(&card.shell))
-        .collect::<Result<_, ShellError>>()?;
+        .collect::<Vec<_>>()
+        .into_iter()
+        .collect::<Result<_, _>>()?;
     let group = |(index, one): (usize, &DrapeResult)| Group {
         name: format!("start {}", index + 1),
         direction: None,
         numbers: vec![
             Number::new("drape_coefficient", one.coefficient, "drape coefficient", PERCENT, "%"),
-            Number { key: "nodes", value: one.nodes as f64, name: "nodes", shown: one.nodes.to_string() },
+            Number::count("nodes", one.nodes, "nodes"),
             Number::new("shadow_m2", one.shadow, "shadow", CM2, "cm²"),
             Number::new("specimen_m2", one.specimen, "specimen", CM2, "cm²"),
             Number::new("support_m2", one.support, "support", CM2, "cm²"),
@@ -68,8 +70,12 @@ pub fn drape(card: &Card, of: &Drape) -> Result<Report, ShellError> {
     ];
     series.extend(found.iter().enumerate().map(|(k, one)| closed(format!("shadow {}", k + 1), &|i| one.outline[i])));
     let first = &found[0];
+    let mut remarks = vec![
+        "folds do not touch each other: a limp sheet passes through itself, and its coefficient is too small"
+            .to_owned(),
+    ];
+    remarks.extend(too_coarse(card, of.edge));
     Ok(Report {
-        test: "drape",
         what: format!(
             "drape test (Cusick), {} cm on {} cm, {} triangles",
             digits(100.0 * test.specimen),
@@ -77,17 +83,28 @@ pub fn drape(card: &Card, of: &Drape) -> Result<Report, ShellError> {
             first.triangles.len()
         ),
         groups,
-        heads: vec!["start", "angle [rad]", "radius of the shadow [m]"],
+        heads: heads(["start", "angle [rad]", "radius of the shadow [m]"]),
         rows: rows.collect(),
         plot: Plot::lines(&card.title, "along the weft [mm]", "along the warp [mm]", &series),
-        remarks: vec![
-            "folds do not touch each other: a limp sheet passes through itself, and its coefficient is too small"
-                .to_owned(),
-        ],
+        remarks,
         extras: vec![
-            Extra { suffix: EXTRAS[0], text: sheet_picture(&first.places, &first.triangles) },
-            Extra { suffix: EXTRAS[1], text: obj(first) },
+            Extra { suffix: EXTRAS[0].into(), text: sheet_picture(&first.places, &first.triangles) },
+            Extra { suffix: EXTRAS[1].into(), text: obj(first) },
         ],
+    })
+}
+
+/// A warning of a mesh that is too coarse for a limp sheet.
+fn too_coarse(card: &Card, edge: f64) -> Option<String> {
+    // B = 2k_θ of the direction that bends most easily.
+    let rigidity = card.shell.bending.to_array().into_iter().fold(f64::INFINITY, |least, k| least.min(2.0 * k));
+    let length = (rigidity / (card.shell.areal_mass * DrapeTest::default().gravity)).cbrt();
+    (edge > length).then(|| {
+        format!(
+            "WARNING: edges of the mesh, {} mm, are longer than the bending length, {} mm: the sheet folds too little, and its coefficient is too large; make them shorter with --edge",
+            digits(edge / MM),
+            digits(length / MM)
+        )
     })
 }
 

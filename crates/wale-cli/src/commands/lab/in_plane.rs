@@ -1,17 +1,18 @@
 //! Tests that draw a fabric: swatch, strip, KES tensile, FAST.
 
 use wale::picture::{Panel, Plot};
-use wale_lab::shell::{OutOfPlane, ShellError};
+use wale_lab::shell::OutOfPlane;
 use wale_lab::virtual_test::stretch::Until;
 use wale_lab::virtual_test::units::{FAST_MM2, GF_CM_PER_CM2, GF_PER_CM, MM, PERCENT, UN_M};
-use wale_lab::virtual_test::{FastTest, KesTensileTest, StretchTest};
+use wale_lab::virtual_test::{FastTest, KesTensileResult, KesTensileTest, StretchTest};
 
 use super::card::Card;
-use super::report::{Group, Number, Report, digits, direction_name};
-use super::{directions, in_directions, line};
+use super::failure::TestFailure;
+use super::report::{Group, Number, Report, digits, direction_name, heads};
+use super::{in_directions, line};
 use crate::arguments::lab::{Directed, Stretch};
 
-pub fn stretch(card: &Card, of: &Stretch, test: &'static str) -> Result<Report, ShellError> {
+pub fn stretch(card: &Card, of: &Stretch, test: &'static str) -> Result<Report, TestFailure> {
     let mut one = if test == "strip" { StretchTest::strip() } else { StretchTest::swatch() };
     one.specimen.length = of.size.length.unwrap_or(one.specimen.length);
     one.specimen.width = of.size.width.unwrap_or(one.specimen.width);
@@ -19,46 +20,28 @@ pub fn stretch(card: &Card, of: &Stretch, test: &'static str) -> Result<Report, 
     if of.wrinkle {
         one.out_of_plane = OutOfPlane::Free { disturbance: 1e-4 };
     }
-    let found =
-        in_directions(&directions(&of.directed.direction), |angle| StretchTest { angle, ..one }.run(&card.shell))?;
+    let found = in_directions(&of.directed.direction, |angle| StretchTest { angle, ..one }.run(&card.shell))?;
     let groups = found.iter().map(|(angle, found)| {
         let last = found.last();
-        let line_load = last.force / found.width;
         Group {
             name: direction_name(*angle),
             direction: Some(*angle),
-            numbers: vec![
-                Number::new("stretch", last.stretch, "stretch at the end", PERCENT, "%"),
-                Number::new("force_N", last.force, "force at the end", 1.0, "N"),
-                Number::new("line_force_N_per_m", line_load, "by width", GF_PER_CM, "gf/cm"),
-                Number::new("compression", last.compression, "contraction", PERCENT, "%"),
-                Number::new("initial_stiffness_N_per_m", found.initial_stiffness(), "stiffness at first", 1.0, "N/m"),
-            ],
+            numbers: stretch_numbers(
+                last.stretch,
+                last.force,
+                found.width,
+                last.compression,
+                found.initial_stiffness(),
+            ),
         }
     });
     let rows = found.iter().flat_map(|(angle, found)| {
         found.points.iter().map(|p| vec![angle.to_degrees(), p.stretch, p.force, p.compression])
     });
-    let plot = Plot {
-        title: card.title.clone(),
-        x_label: "stretch [%]".to_owned(),
-        panels: vec![
-            Panel {
-                y_label: "force [N]".to_owned(),
-                series: found
-                    .iter()
-                    .map(|(a, f)| line(*a, f.points.iter().map(|p| [p.stretch / PERCENT, p.force])))
-                    .collect(),
-            },
-            Panel {
-                y_label: "contraction [%]".to_owned(),
-                series: found
-                    .iter()
-                    .map(|(a, f)| line(*a, f.points.iter().map(|p| [p.stretch / PERCENT, p.compression / PERCENT])))
-                    .collect(),
-            },
-        ],
-    };
+    let curves: Vec<(f64, Vec<[f64; 3]>)> = found
+        .iter()
+        .map(|(a, f)| (*a, f.points.iter().map(|p| [p.stretch, p.force, p.compression]).collect()))
+        .collect();
     let mut remarks = Vec::new();
     if test == "strip" {
         remarks.push("a shell does not break: there is no strength and no elongation at break".to_owned());
@@ -67,21 +50,48 @@ pub fn stretch(card: &Card, of: &Stretch, test: &'static str) -> Result<Report, 
     let kind = if test == "strip" { "strip (ISO 13934-1)" } else { "swatch" };
     let manner = if of.wrinkle { "free to wrinkle" } else { "kept flat" };
     Ok(Report {
-        test,
         what: format!("{kind}, {} × {} mm between clamps, {manner}", digits(size.length / MM), digits(size.width / MM)),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "stretch [-]", "force [N]", "contraction [-]"],
+        heads: heads(["direction [deg]", "stretch [-]", "force [N]", "contraction [-]"]),
         rows: rows.collect(),
-        plot,
+        plot: stretch_plot(&card.title, &curves),
         remarks,
         extras: Vec::new(),
     })
 }
 
-pub fn kes_tensile(card: &Card, of: &Directed) -> Result<Report, ShellError> {
-    let found = in_directions(&directions(&of.direction), |angle| {
-        KesTensileTest { angle, ..KesTensileTest::default() }.run(&card.shell)
-    })?;
+/// Numbers of a specimen that was drawn to a force \[N\].
+pub fn stretch_numbers(stretch: f64, force: f64, width: f64, contraction: f64, stiffness: f64) -> Vec<Number> {
+    vec![
+        Number::new("stretch", stretch, "stretch at the end", PERCENT, "%"),
+        Number::new("force_N", force, "force at the end", 1.0, "N"),
+        Number::new("line_force_N_per_m", force / width, "by width", GF_PER_CM, "gf/cm"),
+        Number::new("compression", contraction, "contraction", PERCENT, "%"),
+        Number::new("initial_stiffness_N_per_m", stiffness, "stiffness at first", 1.0, "N/m"),
+    ]
+}
+
+/// Force and contraction by stretch, of curves by direction \[rad\].
+pub fn stretch_plot(title: &str, curves: &[(f64, Vec<[f64; 3]>)]) -> Plot {
+    let panel = |label: &str, of: fn(&[f64; 3]) -> f64| Panel {
+        y_label: label.to_owned(),
+        series: curves.iter().map(|(a, points)| line(*a, points.iter().map(|p| [p[0] / PERCENT, of(p)]))).collect(),
+    };
+    Plot {
+        title: title.to_owned(),
+        x_label: "stretch [%]".to_owned(),
+        panels: vec![panel("force [N]", |p| p[1]), panel("contraction [%]", |p| p[2] / PERCENT)],
+    }
+}
+
+pub fn kes_tensile(card: &Card, of: &Directed) -> Result<Report, TestFailure> {
+    let found =
+        in_directions(&of.direction, |angle| KesTensileTest { angle, ..KesTensileTest::default() }.run(&card.shell))?;
+    Ok(kes_tensile_report(&found, &card.title))
+}
+
+/// What KES-FB1 prints of a model that gives all work back.
+pub fn kes_tensile_report(found: &[(f64, KesTensileResult)], title: &str) -> Report {
     let groups = found.iter().map(|(angle, found)| Group {
         name: direction_name(*angle),
         direction: Some(*angle),
@@ -97,21 +107,20 @@ pub fn kes_tensile(card: &Card, of: &Directed) -> Result<Report, ShellError> {
         .flat_map(|(angle, found)| found.points.iter().map(|[s, f, c]| vec![angle.to_degrees(), *s, *f, *c]));
     let series =
         found.iter().map(|(a, f)| line(*a, f.points.iter().map(|[s, load, _]| [s / PERCENT, load / GF_PER_CM])));
-    Ok(Report {
-        test: "kes-tensile",
+    Report {
         what: "KES-FB1 tensile, 5 cm long and 20 cm wide, to 500 gf/cm".to_owned(),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "stretch [-]", "line force [N/m]", "contraction [-]"],
+        heads: heads(["direction [deg]", "stretch [-]", "line force [N/m]", "contraction [-]"]),
         rows: rows.collect(),
-        plot: Plot::lines(&card.title, "stretch [%]", "load by width [gf/cm]", &series.collect::<Vec<_>>()),
+        plot: Plot::lines(title, "stretch [%]", "load by width [gf/cm]", &series.collect::<Vec<_>>()),
         remarks: vec![
-            "an elastic shell gives all work back: RT is 100 % of any card and says nothing of the fabric".to_owned(),
+            "an elastic model gives all work back: RT is 100 % of any fabric and says nothing of the fabric".to_owned(),
         ],
         extras: Vec::new(),
-    })
+    }
 }
 
-pub fn fast(card: &Card) -> Result<Report, ShellError> {
+pub fn fast(card: &Card) -> Result<Report, TestFailure> {
     let found = FastTest::default().run(&card.shell)?;
     let mut groups = Vec::new();
     let angles = [0.0, 90f64.to_radians()];
@@ -149,10 +158,9 @@ pub fn fast(card: &Card) -> Result<Report, ShellError> {
     }
     rows.push(vec![45.0, found.bias_extension, loads[0]]);
     Ok(Report {
-        test: "fast",
         what: "FAST-2 and FAST-3, 100 × 50 mm between clamps".to_owned(),
         groups,
-        heads: vec!["direction [deg]", "stretch [-]", "line force [N/m]"],
+        heads: heads(["direction [deg]", "stretch [-]", "line force [N/m]"]),
         rows,
         plot: Plot::lines(&card.title, "stretch [%]", "load by width [gf/cm]", &series),
         remarks: vec![

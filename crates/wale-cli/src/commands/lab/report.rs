@@ -1,26 +1,30 @@
 //! What a virtual test reports: numbers as instruments print them and in SI, a table, a plot; and where it goes.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::path::Path;
 
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use wale::picture::Plot;
 use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
 pub use wale_lab::fabric_file::direction_name;
 
+use super::failure::TestFailure;
 use crate::exit::{Code, Failure};
 use crate::{output, say};
 
 /// A number that a test reports.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Number {
     /// Name and unit in SI, as a key of JSON: `B_N_m`.
-    pub key: &'static str,
+    pub key: Cow<'static, str>,
     /// In SI.
     pub value: f64,
     /// What the laboratory calls it.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// As an instrument prints it.
     pub shown: String,
 }
@@ -29,17 +33,23 @@ impl Number {
     /// A number that instruments print in a unit of this size in SI.
     pub fn new(key: &'static str, value: f64, name: &'static str, unit: f64, unit_name: &str) -> Self {
         let shown = format!("{} {unit_name}", digits(value / unit));
-        Self { key, value, name, shown: shown.trim_end().to_owned() }
+        Self { key: key.into(), value, name: name.into(), shown: shown.trim_end().to_owned() }
     }
 
-    /// What every elastic shell has: no result.
+    /// What everything elastic has: no result.
     pub fn trivial(key: &'static str, value: f64, name: &'static str, shown: &str) -> Self {
-        Self { key, value, name, shown: format!("{shown}   (a shell cannot tell)") }
+        Self { key: key.into(), value, name: name.into(), shown: format!("{shown}   (an elastic model cannot tell)") }
+    }
+
+    /// A count.
+    pub fn count(key: &'static str, count: usize, name: &'static str) -> Self {
+        Self { key: key.into(), value: count as f64, name: name.into(), shown: count.to_string() }
     }
 }
 
 /// Numbers of one direction, or of the whole specimen.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Group {
     /// In words: `weft`.
     pub name: String,
@@ -50,25 +60,25 @@ pub struct Group {
 }
 
 /// A file beside table and plot.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Extra {
     /// What follows the test's name: `-sheet.svg`.
-    pub suffix: &'static str,
+    pub suffix: Cow<'static, str>,
     /// What is in it.
     pub text: String,
 }
 
 /// All that a test reports.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Report {
-    /// Name of the test on the command line.
-    pub test: &'static str,
     /// What was done, in words.
     pub what: String,
     /// Numbers.
     pub groups: Vec<Group>,
     /// Columns of the table, with their units.
-    pub heads: Vec<&'static str>,
+    pub heads: Vec<Cow<'static, str>>,
     /// Its rows.
     pub rows: Vec<Vec<f64>>,
     /// The plot.
@@ -77,6 +87,11 @@ pub struct Report {
     pub remarks: Vec<String>,
     /// Other files.
     pub extras: Vec<Extra>,
+}
+
+/// Names of columns.
+pub fn heads<const N: usize>(names: [&'static str; N]) -> Vec<Cow<'static, str>> {
+    names.into_iter().map(Cow::Borrowed).collect()
 }
 
 /// Four significant digits, in full where that is short.
@@ -98,7 +113,39 @@ impl Report {
         [".csv", ".svg", ".json"].into_iter().chain(extras.iter().copied()).collect()
     }
 
-    fn json(&self, title: &str, folder: &Path) -> Value {
+    /// Reports of several directions as one; all are of the same test.
+    pub fn join(reports: Vec<Self>) -> Option<Self> {
+        reports.into_iter().reduce(|mut all, next| {
+            all.groups.extend(next.groups);
+            all.rows.extend(next.rows);
+            for (panel, more) in all.plot.panels.iter_mut().zip(next.plot.panels) {
+                panel.series.extend(more.series);
+            }
+            for remark in next.remarks {
+                if !all.remarks.contains(&remark) {
+                    all.remarks.push(remark);
+                }
+            }
+            all.extras.extend(next.extras);
+            all
+        })
+    }
+
+    /// That all its numbers are finite.
+    ///
+    /// # Errors
+    /// [`TestFailure`] if not: JSON has no word for them.
+    pub fn checked(self) -> Result<Self, TestFailure> {
+        let numbers = self.groups.iter().flat_map(|group| &group.numbers).map(|number| number.value);
+        let lines = self.plot.panels.iter().flat_map(|panel| &panel.series);
+        let drawn = lines.flat_map(|line| line.xs.iter().chain(&line.ys).copied());
+        if numbers.chain(self.rows.iter().flatten().copied()).chain(drawn).all(f64::is_finite) {
+            return Ok(self);
+        }
+        Err(TestFailure::not_converged("the test gave numbers that are not finite"))
+    }
+
+    fn json(&self, test: &str, title: &str, folder: &Path) -> Value {
         let group = |group: &Group| {
             let mut map = Map::new();
             map.insert("name".to_owned(), json!(group.name));
@@ -106,12 +153,12 @@ impl Report {
                 map.insert("direction_rad".to_owned(), json!(direction));
             }
             for number in &group.numbers {
-                map.insert(number.key.to_owned(), json!(number.value));
+                map.insert(number.key.clone().into_owned(), json!(number.value));
             }
             Value::Object(map)
         };
         json!({
-            "test": self.test,
+            "test": test,
             "title": title,
             "what": self.what,
             "folder": folder,
@@ -136,15 +183,15 @@ impl Report {
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn deliver(&self, title: &str, folder: &Path, as_json: bool) -> Result<(), Failure> {
+    pub fn deliver(&self, test: &str, title: &str, folder: &Path, as_json: bool) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
         let svg = self.plot.to_svg().map_err(|error| Failure::new(Code::NotConverged, error))?;
-        let json = self.json(title, folder);
+        let json = self.json(test, title, folder);
         let json_text = serde_json::to_string_pretty(&json).map_err(|error| Failure::new(Code::Bug, error))? + "\n";
         let mut files = vec![(".csv", self.csv()), (".svg", svg), (".json", json_text)];
-        files.extend(self.extras.iter().map(|extra| (extra.suffix, extra.text.clone())));
+        files.extend(self.extras.iter().map(|extra| (&*extra.suffix, extra.text.clone())));
         for (suffix, text) in &files {
-            let path = folder.join(format!("{}{suffix}", self.test));
+            let path = folder.join(format!("{test}{suffix}"));
             write_atomically(&path, |out| std::io::Write::write_all(out, text.as_bytes()))?;
         }
         if as_json {
@@ -161,7 +208,7 @@ impl Report {
             say!("  {remark}")?;
         }
         let names: Vec<&str> = files.iter().map(|(suffix, _)| *suffix).collect();
-        say!("  {} ({})", folder.join(self.test).display(), names.join(", "))
+        say!("  {} ({})", folder.join(test).display(), names.join(", "))
     }
 }
 

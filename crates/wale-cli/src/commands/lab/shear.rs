@@ -1,19 +1,23 @@
 //! Tests that shear a fabric: KES shear, picture frame, bias extension.
 
 use wale::picture::{Panel, Plot, Series};
-use wale_lab::shell::ShellError;
 use wale_lab::virtual_test::units::{DEG, GF_PER_CM, GF_PER_CM_DEG, MM, PERCENT};
-use wale_lab::virtual_test::{BiasExtensionTest, KesShearTest, PictureFrameTest};
+use wale_lab::virtual_test::{BiasExtensionTest, KesShearResult, KesShearTest, PictureFrameResult, PictureFrameTest};
 
 use super::card::Card;
-use super::report::{Group, Number, Report, digits, direction_name};
+use super::failure::TestFailure;
+use super::report::{Group, Number, Report, digits, direction_name, heads};
 use super::{in_directions, line};
 use crate::arguments::lab::{BiasExtension, Directed, PictureFrame};
 
-pub fn kes_shear(card: &Card, of: &Directed) -> Result<Report, ShellError> {
-    // On the bias shear compresses yarns, which a specimen that is kept flat may not bear: only who asks gets it.
-    let asked = if of.direction.is_empty() { vec![0.0, 90f64.to_radians()] } else { of.direction.clone() };
-    let found = in_directions(&asked, |angle| KesShearTest { angle, ..KesShearTest::default() }.run(&card.shell))?;
+pub fn kes_shear(card: &Card, of: &Directed) -> Result<Report, TestFailure> {
+    let found =
+        in_directions(&of.direction, |angle| KesShearTest { angle, ..KesShearTest::default() }.run(&card.shell))?;
+    Ok(kes_shear_report(&found, &card.title))
+}
+
+/// What the test prints of a model.
+pub fn kes_shear_report(found: &[(f64, KesShearResult)], title: &str) -> Report {
     let groups = found.iter().map(|(angle, found)| Group {
         name: format!("pulled along the {}", direction_name(*angle)),
         direction: Some(*angle),
@@ -27,28 +31,30 @@ pub fn kes_shear(card: &Card, of: &Directed) -> Result<Report, ShellError> {
         .iter()
         .flat_map(|(angle, found)| found.points.iter().map(|[a, f, s]| vec![angle.to_degrees(), *a, *f, *s]));
     let series = found.iter().map(|(a, f)| line(*a, f.points.iter().map(|[x, y, _]| [x / DEG, y / GF_PER_CM])));
-    Ok(Report {
-        test: "kes-shear",
+    Report {
         what: "KES-FB1 shear, 5 cm long and 20 cm wide, pulled by 10 gf/cm, to ±8°".to_owned(),
         groups: groups.collect(),
-        heads: vec!["direction [deg]", "angle [rad]", "line force across [N/m]", "stretch along [-]"],
+        heads: heads(["direction [deg]", "angle [rad]", "line force across [N/m]", "stretch along [-]"]),
         rows: rows.collect(),
-        plot: Plot::lines(&card.title, "angle of shear [deg]", "force by width [gf/cm]", &series.collect::<Vec<_>>()),
+        plot: Plot::lines(title, "angle of shear [deg]", "force by width [gf/cm]", &series.collect::<Vec<_>>()),
         remarks: vec![
-            "an elastic shell has no hysteresis: 2HG and 2HG5 are zero of any card and say nothing of the fabric"
+            "an elastic model has no hysteresis: 2HG and 2HG5 are zero of any fabric and say nothing of the fabric"
                 .to_owned(),
             "the pull of 10 gf/cm is part of G, about 0.17 gf/(cm·deg)".to_owned(),
         ],
         extras: Vec::new(),
-    })
+    }
 }
 
-pub fn picture_frame(card: &Card, of: &PictureFrame) -> Result<Report, ShellError> {
-    let asked = &of.directed.direction;
-    let asked = if asked.is_empty() { vec![0.0] } else { asked.clone() };
-    let found = in_directions(&asked, |angle| {
+pub fn picture_frame(card: &Card, of: &PictureFrame) -> Result<Report, TestFailure> {
+    let found = in_directions(&of.directed.direction, |angle| {
         PictureFrameTest { side: of.side, angle, largest: of.to, ..PictureFrameTest::default() }.run(&card.shell)
     })?;
+    Ok(picture_frame_report(&found, of.side, &card.title))
+}
+
+/// What the test prints of a model.
+pub fn picture_frame_report(found: &[(f64, PictureFrameResult)], side: f64, title: &str) -> Report {
     let groups = found.iter().map(|(angle, found)| {
         let last = found.points[found.points.len() - 1];
         Group {
@@ -67,26 +73,25 @@ pub fn picture_frame(card: &Card, of: &PictureFrame) -> Result<Report, ShellErro
         found.points.iter().map(|p| vec![angle.to_degrees(), p.angle, p.travel, p.force, p.shear_force, p.energy])
     });
     let series = found.iter().map(|(a, f)| line(*a, f.points.iter().map(|p| [p.angle / DEG, p.shear_force])));
-    Ok(Report {
-        test: "picture-frame",
-        what: format!("picture frame, sides of {} mm", digits(of.side / MM)),
+    Report {
+        what: format!("picture frame, sides of {} mm", digits(side / MM)),
         groups: groups.collect(),
-        heads: vec![
+        heads: heads([
             "direction [deg]",
             "angle [rad]",
             "travel [m]",
             "force [N]",
             "shear force by length [N/m]",
             "energy [J]",
-        ],
+        ]),
         rows: rows.collect(),
-        plot: Plot::lines(&card.title, "angle of shear [deg]", "F_s/L [N/m]", &series.collect::<Vec<_>>()),
+        plot: Plot::lines(title, "angle of shear [deg]", "F_s/L [N/m]", &series.collect::<Vec<_>>()),
         remarks: vec!["kept flat: there is no angle at which it locks and wrinkles".to_owned()],
         extras: Vec::new(),
-    })
+    }
 }
 
-pub fn bias_extension(card: &Card, of: &BiasExtension) -> Result<Report, ShellError> {
+pub fn bias_extension(card: &Card, of: &BiasExtension) -> Result<Report, TestFailure> {
     let mut test = BiasExtensionTest { largest: of.to, ..BiasExtensionTest::default() };
     test.specimen.length = of.size.length.unwrap_or(test.specimen.length);
     test.specimen.width = of.size.width.unwrap_or(test.specimen.width);
@@ -108,7 +113,6 @@ pub fn bias_extension(card: &Card, of: &BiasExtension) -> Result<Report, ShellEr
         ],
     };
     Ok(Report {
-        test: "bias-extension",
         what: format!(
             "bias extension, {} × {} mm between clamps",
             digits(test.specimen.length / MM),
@@ -126,13 +130,13 @@ pub fn bias_extension(card: &Card, of: &BiasExtension) -> Result<Report, ShellEr
                 Number::new("shear_force_N_per_m", last.shear_force, "F_s/L at the end", 1.0, "N/m"),
             ],
         }],
-        heads: vec![
+        heads: heads([
             "angle by travel [rad]",
             "angle as seen [rad]",
             "stretch [-]",
             "force [N]",
             "shear force by length [N/m]",
-        ],
+        ]),
         rows: found.points.iter().map(|p| vec![p.angle, p.seen_angle, p.stretch, p.force, p.shear_force]).collect(),
         plot,
         remarks: vec![
