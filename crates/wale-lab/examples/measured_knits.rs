@@ -1,10 +1,11 @@
 //! Yarns fitted to hand-knitted stockinette and garter of one acrylic yarn [Singal2024], and garter foretold from stockinette alone.
 //!
 //! ```text
-//! cargo run --release -p wale-lab --example measured_knits -- [all|foretell|sizes [SUMMARY.csv]]
+//! cargo run --release -p wale-lab --example measured_knits -- [all|near|foretell|sizes [SUMMARY.csv [NUMBERS]]]
 //! ```
 //!
-//! `foretell` leaves out the fit of garter, `sizes` fits nothing and tells how the tiles lie.
+//! `near` fits garter by least squares from the yarn of stockinette alone; `foretell` leaves out the fit of garter. Both leave out that of
+//! stockinette if the seven numbers of its yarn are given. `sizes` fits nothing and tells how the tiles lie.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,11 +14,11 @@ use std::time::Instant;
 use wale_lab::fabric_file::FabricFile;
 use wale_lab::shell::membrane_fit::MembraneFitSettings;
 use wale_lab::shell::of_fabric::fit_shell;
-use wale_lab::yarn_fit::gradients::GradientSettings;
+use wale_lab::yarn_fit::gradients::{GradientSettings, Round, improve};
 use wale_lab::yarn_fit::of_fabric::{Ablation, yarn_problem};
 use wale_lab::yarn_fit::problem::{Answers, Here, P, Question, YarnProblem};
 use wale_lab::yarn_fit::run::{Way, fit_yarn};
-use wale_lab::yarn_fit::{Progress, Target, YarnFitError, errors};
+use wale_lab::yarn_fit::{Progress, RodSpace, Target, YarnFitError, errors};
 use wale_lab::yarn_tile::{YarnTile, contact_radius};
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -139,11 +140,12 @@ fn main() -> Result<(), Failure> {
         .iter()
         .map(|swatch| problem(&fabric(&table, folder.path(), swatch)?))
         .collect::<Result<Vec<_>, Failure>>()?;
-    let mut of_stockinette = None;
+    let given: Vec<f64> = std::env::args().skip(3).map(|number| number.parse()).collect::<Result<_, _>>()?;
+    let mut of_stockinette: Option<[f64; P]> = given.try_into().ok();
     for (k, (swatch, problem)) in FABRICS.iter().zip(&problems).enumerate() {
         println!("{}", swatch.stitch);
         describe(&problem.tile);
-        if what == "sizes" || (what == "foretell" && k > 0) {
+        if what == "sizes" || (what != "all" && (k > 0 || of_stockinette.is_some())) {
             continue;
         }
         let begun = Instant::now();
@@ -162,6 +164,16 @@ fn main() -> Result<(), Failure> {
         // The yarn is the same; its inner contact is that of stockinette, too.
         let foretold = YarnProblem { base: problems[0].base, ..problems[1].clone() };
         println!("  {:?}", judge(&foretold, parameters));
+        if what == "near" {
+            let (garter, begun) = (&problems[1], Instant::now());
+            let silent = |_: &wale_lab::yarn_fit::Step| {};
+            let round = Round { starts: 1, evaluations: 12, samples: 4 };
+            let from = RodSpace::coordinates(parameters);
+            let Ok(found) = improve(garter, &Here::new(garter), from, &round, 0.01, &Progress::new(&silent));
+            let found = RodSpace::parameters(found.ok_or("the tile could not be tested")?.coordinates);
+            println!("garter, fitted from there in {:.0} s: {found:?}", begun.elapsed().as_secs_f64());
+            println!("  {:?}", judge(garter, found));
+        }
     }
     Ok(())
 }

@@ -66,7 +66,7 @@ fn fabrics() -> Result<Vec<Fabric>, Failure> {
     let woven = |name, draft: &Draft| Fabric {
         name,
         tile: weave(draft),
-        largest: [0.03, 0.1, 0.03],
+        largest: [0.08, 0.15, 0.08],
         bending: 0.5,
         holding: 0.4,
     };

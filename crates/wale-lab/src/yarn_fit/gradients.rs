@@ -39,7 +39,7 @@ impl Default for GradientSettings {
         Self {
             screened: 48,
             screening_samples: 3,
-            rounds: [round(8, 5, 4), round(3, 8, 4), round(2, 20, 8)],
+            rounds: [round(8, 5, 4), round(3, 8, 4), round(1, 20, 8)],
             least_noise: 0.01,
         }
     }
@@ -65,7 +65,9 @@ pub struct Found {
     pub least_squares: Option<LeastSquaresFit<P>>,
 }
 
-/// Parts of the onset from which the best place is improved once more.
+/// The round in which the best place is improved from smaller onsets, too.
+const WITH_EARLIER_ONSETS: usize = 1;
+/// Parts of the onset that they are.
 const EARLIER: [f64; 2] = [0.4, 0.1];
 /// Change of a coordinate by which the rest shapes' part of a derivative is found.
 const DIFFERENCE: f64 = 1e-2;
@@ -102,9 +104,8 @@ pub fn fit_by_gradients<A: Answers>(
     best_first(&mut known);
     for (k, round) in settings.rounds.iter().enumerate().filter(|(_, round)| round.starts > 0) {
         let mut from: Vec<[f64; P]> = known.iter().take(round.starts).map(|found| found.coordinates).collect();
-        if let (Some(best), true) = (known.first(), k > 0 && known[0].least_squares.is_some()) {
-            from.extend(with_earlier_onsets(&problems[0], &best.coordinates));
-        }
+        let best = known.first().filter(|best| k == WITH_EARLIER_ONSETS && best.least_squares.is_some());
+        from.extend(best.into_iter().flat_map(|best| with_earlier_onsets(&problems[0], &best.coordinates)));
         let improved: Vec<Result<Option<Found>, A::Unanswered>> = from
             .par_iter()
             .map(|&from| improve(problems, answers, from, round, settings.least_noise, progress))
