@@ -56,7 +56,8 @@ pub fn ablations(
             let bending = match (&fit, kind) {
                 (Some(fit), AblationKind::WithBending) => {
                     let at = whole[fabric].fit.material.parameters();
-                    let question = Question { fabric, ..Question::of(at, fit.targets[0].points.len(), false) };
+                    let samples = fit.targets.first().map_or(1, |target| target.points.len());
+                    let question = Question { fabric, ..Question::of(at, samples, false) };
                     let of_whole = task.answer(&question)?;
                     of_whole.and_then(|of_whole| {
                         Some([bending_error(&fit.bending, &of_whole)?, bending_error(&fit.bending, &fit.evaluation)?])
