@@ -202,7 +202,7 @@ pub fn relaxation(found: &Shrinkage, what: String, title: &str) -> Report {
             &[series("as knitted", found.knitted), series("at rest", found.relaxed)],
         ),
         remarks: vec![
-            "as knitted is as the scene lays it out: give wale_spacing and course_spacing as they come off the needles"
+            "as knitted is as the scene lays it out: give loop_length, and wale_spacing and course_spacing as they come off the needles"
                 .to_owned(),
             "at rest is without friction, as after washing and tumbling".to_owned(),
         ],
