@@ -50,7 +50,7 @@ pub enum Command {
     Fit(fit::Fit),
     /// Write a page on which yarns are laid over photographs of a swatch, to make a yarn tile
     Register(register::Register),
-    /// Do a virtual textile test on the thin shell of a fabric: KES, FAST, cantilever, drape, …
+    /// Do a virtual textile test on a fabric, by shell, tile or yarns: KES, FAST, cantilever, drape, curl, …
     Lab(lab::Lab),
     /// Count loops, nodes and yarn of a scene or a run
     Inspect(Inspect),

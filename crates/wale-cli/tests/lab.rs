@@ -185,12 +185,13 @@ fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
     let lost = told(&with(&["--tell", "-"]), &some);
     assert_eq!(lost.status.code(), Some(3));
     assert!(error(&lost).contains("one.toml: not all questions are answered"), "{}", error(&lost));
-    assert_eq!(files("other"), written[1]);
+    // Fonts are part of the plots: too much to print where they differ.
+    assert!(files("other") == written[1]);
     assert!(!folder.path().join("one.lab").exists());
     let all = told(&with(&["--tell", "-", "--force"]), &answers.concat());
     assert!(all.status.success(), "{}", error(&all));
     assert_eq!(all.stdout, here.stdout);
-    assert_eq!([files("one"), files("other")], written);
+    assert!([files("one"), files("other")] == written);
 
     // What answers another question, or the same one differently, is refused with its line.
     let foreign = answers[0].replacen("\"id\":\"", "\"id\":\"0", 1);

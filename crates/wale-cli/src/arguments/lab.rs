@@ -125,10 +125,10 @@ pub struct Free {
     #[command(flatten)]
     pub common: Common,
     /// Columns of loops of the swatch
-    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=1000))]
     pub columns: u32,
     /// Rows of loops
-    #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(4..=1000))]
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u32).range(4..=1000))]
     pub rows: u32,
 }
 

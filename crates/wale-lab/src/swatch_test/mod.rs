@@ -15,7 +15,7 @@ use wale::scene::Scene;
 use wale::simulation::{Simulation, SimulationError, Start};
 
 pub use clamped::{ClampedResult, ClampedSwatch};
-pub use curl::{CurlResult, curl};
+pub use curl::{CurlResult, EdgeCurl, curl};
 pub use relaxation::{Shrinkage, shrinkage_of_swatch, shrinkage_of_tile};
 
 /// Most loops of a swatch: as many take minutes.

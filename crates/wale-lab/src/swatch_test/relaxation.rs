@@ -73,7 +73,7 @@ mod tests {
     fn a_repeat_that_is_laid_out_too_wide_shrinks_to_the_same_size() {
         let scene = |spacing: &str| {
             let text = format!(
-                "schema = 1\n[fabric]\n{spacing}[fabric.chart]\npattern = \"stockinette\"\ncolumns = 4\nrows = 4\n"
+                "schema = 1\n[fabric]\nloop_length = \"15 mm\"\n{spacing}[fabric.chart]\npattern = \"stockinette\"\ncolumns = 4\nrows = 4\n"
             );
             Scene::from_text(&text, "stockinette.toml").unwrap()
         };
@@ -81,8 +81,9 @@ mod tests {
             ["", "wale_spacing = \"5 mm\"\n"].map(|spacing| shrinkage_of_tile(&scene(spacing)).unwrap());
         assert!((wide.knitted[0] - 5e-3).abs() < 1e-12 && wide.knitted[1] == plain.knitted[1]);
         for axis in 0..2 {
-            assert!((wide.relaxed[axis] / plain.relaxed[axis] - 1.0).abs() < 1e-3, "{plain:?} {wide:?}");
+            // Stiffnesses that the card derives from its layout differ a little.
+            assert!((wide.relaxed[axis] / plain.relaxed[axis] - 1.0).abs() < 1e-2, "{plain:?} {wide:?}");
         }
-        assert!(wide.shrinkage()[0] > plain.shrinkage()[0]);
+        assert!(wide.shrinkage()[0] > 0.3 && plain.shrinkage()[0].abs() < 0.01, "{plain:?} {wide:?}");
     }
 }

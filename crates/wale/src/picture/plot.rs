@@ -85,7 +85,7 @@ impl Plot {
     /// If there is nothing to draw or a line's lists differ in length.
     pub fn to_svg(&self) -> Result<String, PlotError> {
         let scene = self.scene()?;
-        Ok(SvgBackend::new().with_embedded_font(true).render_scene(&scene))
+        Ok(renumbered(&SvgBackend::new().with_embedded_font(true).render_scene(&scene)))
     }
 
     /// The plot as a PNG file's bytes, two pixels to each SVG unit.
@@ -181,6 +181,27 @@ impl Panel {
     }
 }
 
+/// The same picture whatever was drawn before in this process: the drawing library counts its clip paths through all pictures, here
+/// they are counted from zero in each.
+fn renumbered(svg: &str) -> String {
+    const NAME: &str = "kuva-clip-";
+    let mut known: Vec<&str> = Vec::new();
+    let mut parts = svg.split(NAME);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let end = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
+        let number = &part[..end];
+        let place = known.iter().position(|other| *other == number).unwrap_or(known.len());
+        if place == known.len() {
+            known.push(number);
+        }
+        text.push_str(NAME);
+        text.push_str(&place.to_string());
+        text.push_str(&part[end..]);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,6 +209,15 @@ mod tests {
     fn series(name: &str, f: impl Fn(f64) -> f64) -> Series {
         let xs: Vec<f64> = (0..60).map(f64::from).collect();
         Series { name: name.to_owned(), ys: xs.iter().map(|x| f(*x)).collect(), xs }
+    }
+
+    #[test]
+    fn a_plot_is_the_same_when_it_is_drawn_again() {
+        let one = Series { name: "one".to_owned(), xs: vec![0.0, 1.0], ys: vec![1.0, 3.0] };
+        let panel = Panel { y_label: "force [N]".to_owned(), series: vec![one] };
+        let plot = Plot { title: String::new(), x_label: "way [m]".to_owned(), panels: vec![panel.clone(), panel] };
+        let [first, second] = [plot.to_svg().unwrap(), plot.to_svg().unwrap()];
+        assert!(first.contains("kuva-clip-0") && first == second);
     }
 
     #[test]

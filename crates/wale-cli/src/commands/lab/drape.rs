@@ -18,6 +18,10 @@ use crate::arguments::lab::Drape;
 pub const EXTRAS: [&str; 2] = ["-sheet.svg", "-sheet.obj"];
 
 pub fn drape(card: &Card, of: &Drape) -> Result<Report, TestFailure> {
+    // The command line sees to it, a question from elsewhere may not.
+    if !(1..=1000).contains(&of.starts) {
+        return Err(TestFailure::bad_input(format_args!("starts is {}, and must be 1 to 1000", of.starts)));
+    }
     let test = DrapeTest { specimen: of.specimen, support: of.support, edge: of.edge, ..DrapeTest::default() };
     let found: Vec<DrapeResult> = (1..=of.starts)
         .into_par_iter()

@@ -77,7 +77,7 @@ fn clamped(
         }
     }
     remarks.dedup();
-    remarks.push("drawn at 5 % a second and brought back; what does not return was rubbed away, but for some hundredths in the yarns' damping".to_owned());
+    remarks.push("drawn at 5 % a second and brought back: what does not return was rubbed away, but for a hundredth or two that went into the yarns' damping".to_owned());
     remarks.push("free to curl: contraction is between the selvedges as a camera sees them".to_owned());
     Ok(Report {
         what: format!("{kind}, by all yarns of a swatch between clamps, with friction"),
@@ -110,7 +110,7 @@ fn group(angle: f64, found: &ClampedResult) -> Group {
 
 fn curled(found: &CurlResult, title: &str) -> Report {
     let side = |curvature: f64| if curvature > 0.0 { "1/m to the front" } else { "1/m to the back" };
-    let edge = |name: &str, angle, curvature: f64, turned: f64| Group {
+    let edge = |name: &str, angle: f64, curvature: f64, turned: f64| Group {
         name: name.to_owned(),
         direction: Some(angle),
         numbers: vec![
@@ -118,10 +118,13 @@ fn curled(found: &CurlResult, title: &str) -> Report {
             Number::new("turned_rad", turned, "turned by", DEG * curvature.signum(), "°"),
         ],
     };
-    let mut groups = vec![
-        edge("sides (along the courses)", 0.0, found.sides, found.turned[0]),
-        edge("cast-on and bind-off (along the wales)", FRAC_PI_2, found.ends, found.turned[1]),
-    ];
+    let names = ["left side (along the courses)", "right side", "cast-on (along the wales)", "bind-off"];
+    let mut groups: Vec<Group> = names
+        .into_iter()
+        .zip([0.0, 0.0, FRAC_PI_2, FRAC_PI_2])
+        .zip(&found.edges)
+        .map(|((name, angle), found)| edge(name, angle, found.curvature, found.turned))
+        .collect();
     groups.push(Group {
         name: "the whole swatch".to_owned(),
         direction: None,
@@ -199,7 +202,7 @@ pub fn relaxation(found: &Shrinkage, what: String, title: &str) -> Report {
             &[series("as knitted", found.knitted), series("at rest", found.relaxed)],
         ),
         remarks: vec![
-            "as knitted is as the scene lays it out: give wale_spacing and course_spacing as they come off the needles"
+            "as knitted is as the scene lays it out: give loop_length, and wale_spacing and course_spacing as they come off the needles"
                 .to_owned(),
             "at rest is without friction, as after washing and tumbling".to_owned(),
         ],
