@@ -7,6 +7,7 @@ use std::fs;
 use fits::{fit, half, said, small_fabric};
 
 #[test]
+#[ignore = "six fits: minutes, too long for every day"]
 fn ablations_are_made_resumed_and_told() {
     let folder = tempfile::tempdir().unwrap();
     let fabric = small_fabric(folder.path(), "jersey", "stockinette", [0.05, 0.15, 0.4]);
@@ -59,7 +60,19 @@ fn ablations_are_made_resumed_and_told() {
     let again = fit(&[&fabric], &["--ablations", "--out", &to("killed")], "");
     assert_eq!(again.status.code(), Some(3));
     assert!(said(&again).contains("--force"), "{}", said(&again));
-    // Ablations are of the whole.
-    let part = fit(&[&fabric], &["--ablations", "--without", "phases"], "");
-    assert_eq!(part.status.code(), Some(2));
+}
+
+#[test]
+fn ablations_are_of_the_whole_and_of_a_yarn() {
+    let folder = tempfile::tempdir().unwrap();
+    let fabric = small_fabric(folder.path(), "jersey", "stockinette", [0.05, 0.15, 0.4]);
+    for part in [&["--without", "phases"][..], &["--with-bending"], &["--ask"], &["--shell-only"]] {
+        let refused = fit(&[&fabric], &[&["--ablations"], part].concat(), "");
+        assert_eq!(refused.status.code(), Some(2), "{part:?}: {}", said(&refused));
+    }
+    let text = fs::read_to_string(&fabric).unwrap().replace("[structure]\nscene = \"scene.toml\"\n", "");
+    fs::write(&fabric, text).unwrap();
+    let no_yarn = fit(&[&fabric], &["--ablations"], "");
+    assert_eq!(no_yarn.status.code(), Some(3));
+    assert!(said(&no_yarn).contains("add [structure]"), "{}", said(&no_yarn));
 }
