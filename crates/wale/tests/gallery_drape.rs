@@ -5,6 +5,8 @@ mod play;
 use play::play;
 use wale::geometry::{CurveSettings, Passages, curves};
 use wale::measure::shadow_area;
+use wale::scene::Scene;
+use wale::simulation::{Simulation, Start};
 
 #[test]
 fn six_fabrics_of_one_yarn_drape_differently() {
@@ -46,4 +48,32 @@ fn six_fabrics_of_one_yarn_drape_differently() {
     let weave = parts[5];
     assert!(parts[..5].iter().all(|part| *part < weave), "{parts:?}");
     assert!(parts.iter().all(|part| (0.3..0.98).contains(part)), "{parts:?}");
+}
+
+/// Pairs of segments of a small flame chevron that pass through each other as it snaps out of its layout, every step looked at.
+fn passages_of_lace(strand_contact: bool) -> usize {
+    let text = format!(
+        "schema = 1\n[yarn]\npreset = \"worsted-wool\"\nmass_damping = \"3 1/s\"\n\
+         [fabric.chart]\npattern = \"flame chevron\"\ncolumns = 14\nrows = 12\n\
+         [simulation]\nduration = \"40 ms\"\nrest_shape_compensation = false\nstrand_contact = {strand_contact}\n"
+    );
+    let scene = Scene::from_text(&text, "lace.toml").unwrap();
+    let start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, false);
+    let mut simulation = Simulation::new(start.network, &scene.yarns, &scene.fabric, scene.plan.clone());
+    let settings = CurveSettings::of(&scene.yarns, &scene.fabric);
+    let mut passages = Passages::of(simulation.network());
+    let mut before = curves(simulation.network(), &simulation.frame(), &settings);
+    while !simulation.finished() {
+        simulation.step().unwrap();
+        let now = curves(simulation.network(), &simulation.frame(), &settings);
+        passages.follow(&before, &now);
+        before = now;
+    }
+    passages.pairs().count()
+}
+
+#[test]
+fn strands_of_lace_keep_out_of_each_other_where_a_scene_asks_for_it() {
+    assert!(passages_of_lace(false) > 0);
+    assert_eq!(passages_of_lace(true), 0);
 }

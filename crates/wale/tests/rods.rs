@@ -4,7 +4,7 @@ mod rod;
 
 use glam::DVec3;
 use rod::{BLOCK, EI, LENGTH, grip, place, settle, simulation, still};
-use wale::dynamics::system::Workspace;
+use wale::dynamics::workspace::Workspace;
 use wale::model::Drive;
 use wale_numerics::block_matrix::BlockMatrix;
 use wale_numerics::sparse_cholesky::{BlockOrder, SparseCholesky};

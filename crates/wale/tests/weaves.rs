@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
-use wale::dynamics::system::{System, Workspace};
+use wale::dynamics::system::System;
+use wale::dynamics::workspace::Workspace;
 use wale::measure::Census;
 use wale::model::{Network, NodeId, YarnRole};
 use wale::pattern::weave::read_wif;

@@ -4,7 +4,9 @@
 pub mod compression;
 mod least_squares;
 pub mod nearby;
+pub mod strands;
 pub mod surface;
 
 pub use compression::Compression;
 pub use nearby::Nearby;
+pub use strands::Strands;

@@ -32,7 +32,7 @@ const PART: usize = 1024;
 const BITS: u32 = 21;
 
 impl Nearby {
-    /// Pairs of nodes `(a, b)`, `a < b`, nearer than `reach` \[m\] now and farther than `apart` \[m\] in the layout,
+    /// Pairs of nodes `(a, b)`, `a < b`, nearer than `reach` \[m\] now and at least `apart` \[m\] apart in the layout,
     /// in order of `a`, then `b`.
     pub fn find(
         &mut self,
@@ -96,7 +96,7 @@ impl Nearby {
                         for &(_, b) in nodes {
                             if b as usize > a
                                 && x.distance_squared(now(b as usize)) < reach2
-                                && layout[a].distance_squared(layout[b as usize]) > apart2
+                                && layout[a].distance_squared(layout[b as usize]) >= apart2
                             {
                                 found.push([a as u32, b]);
                             }

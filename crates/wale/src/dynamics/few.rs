@@ -240,7 +240,8 @@ mod tests {
     use wale_numerics::block_matrix::BlockMatrix;
 
     use super::super::selected::Selected;
-    use super::super::system::{TERMS, Workspace};
+    use super::super::system::TERMS;
+    use super::super::workspace::Workspace;
     use super::*;
     use crate::energy::element::testing::Random;
     use crate::model::{LoopProportions, YarnCard};

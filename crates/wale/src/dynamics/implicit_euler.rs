@@ -6,7 +6,8 @@ use wale_numerics::vector;
 use super::few::FewNodes;
 use super::linear::{Coupling, Linear, LinearError, LinearReport, LinearSettings};
 use super::remaining::{Left, MOST_FAR, far_nodes, moves};
-use super::system::{System, Workspace};
+use super::system::System;
+use super::workspace::Workspace;
 
 /// How a step is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +39,9 @@ pub enum StepError {
     /// A number became infinite or not a number.
     #[error("a coordinate, energy or force is no longer finite")]
     NotFinite,
+    /// Two strands of yarn would pass through each other.
+    #[error("two strands of yarn would pass through each other")]
+    Passage,
     /// No step along the search direction lowers the energy.
     #[error("no step along the search direction lowers the energy")]
     LineSearch,
@@ -289,6 +293,7 @@ impl Newton {
     fn linearise(&mut self, system: &System, linear: &mut Linear, q: &[f64]) -> Result<f64, StepError> {
         let energy = linear.linearise(system, q, self.convexity, &mut self.gradient, &mut self.work);
         system.active_self_contacts(q, &self.free, &mut self.couplings);
+        system.active_strand_contacts(q, &self.free, &mut self.couplings);
         if energy.is_finite() { Ok(energy) } else { Err(StepError::NotFinite) }
     }
 

@@ -13,7 +13,8 @@ use wale_numerics::sparse_cholesky::{BlockOrder, CholeskyError, SparseCholesky};
 use wale_numerics::vector;
 
 use super::selected::Selected;
-use super::system::{System, Workspace};
+use super::system::System;
+use super::workspace::Workspace;
 use crate::fabric::coordinates::BLOCK;
 use crate::model::LinearSolver;
 
@@ -42,14 +43,16 @@ pub enum LinearError {
     NegativeCurvature,
 }
 
-/// Two nodes in contact: the matrix has twice its stiffness on both diagonal blocks and none between them
-/// ([`crate::energy::SelfContact`]); conjugate gradients see the true one.
+/// Nodes in contact: of the stiffness of `Σ wᵢ δᵢ` the matrix has `2 |wᵢ|` on the diagonal blocks and none between them
+/// ([`crate::energy::SelfContact`], [`crate::energy::StrandContact`]); conjugate gradients see the true one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupling {
     /// First slots of the nodes.
-    pub slots: [u32; 2],
+    pub slots: [u32; 4],
+    /// Share `w` of each node in the distance of what touches; those of either side add up to one, or minus one.
+    pub weights: [f64; 4],
     /// `√k n` by node, zero along slots that are not free.
-    pub directions: [[f64; 3]; 2],
+    pub directions: [[f64; 3]; 4],
 }
 
 /// The matrix with the true stiffness of contacts.
@@ -64,14 +67,17 @@ impl<M: LinearOperator> LinearOperator for Coupled<'_, M> {
     }
     fn apply(&mut self, x: &[f64], out: &mut [f64]) {
         self.matrix.apply(x, out);
-        // (δ₂ − δ₁)² is what 2δ₁² + 2δ₂² is less (δ₁ + δ₂)².
-        for Coupling { slots, directions } in self.couplings {
-            let [a, b] = slots.map(|slot| slot as usize);
-            let [n, m] = directions;
-            let sum: f64 = (0..3).map(|k| n[k] * x[a + k] + m[k] * x[b + k]).sum();
-            for k in 0..3 {
-                out[a + k] -= n[k] * sum;
-                out[b + k] -= m[k] * sum;
+        for Coupling { slots, weights, directions } in self.couplings {
+            let moves: [f64; 4] = std::array::from_fn(|i| {
+                let first = slots[i] as usize;
+                (0..3).map(|k| directions[i][k] * x[first + k]).sum()
+            });
+            let sum: f64 = (0..4).map(|i| weights[i] * moves[i]).sum();
+            for i in 0..4 {
+                let change = weights[i] * sum - 2.0 * weights[i].abs() * moves[i];
+                for k in 0..3 {
+                    out[slots[i] as usize + k] += directions[i][k] * change;
+                }
             }
         }
     }

@@ -11,6 +11,7 @@ mod scatter;
 mod selected;
 pub mod state;
 pub mod step;
+mod strands;
 pub mod stretched_tile;
 mod surroundings;
 pub mod system;
@@ -20,5 +21,6 @@ pub mod tile_equilibrium;
 pub mod tile_sensitivity;
 pub mod tile_stiffness;
 mod tile_system;
+pub mod workspace;
 
 pub use state::State;

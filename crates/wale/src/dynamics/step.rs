@@ -200,11 +200,12 @@ impl System {
             self.self_contacts.set.elements.iter().zip(&self.self_contacts.set.stencils).enumerate()
         {
             if let Some((_, n)) = element.touch(&self.self_contacts.set.local(index, q)) {
-                let slots = [stencil[0], stencil[3]];
+                let slots = [stencil[0], stencil[3], stencil[0], stencil[0]];
                 let root = element.stiffness.sqrt();
                 let direction =
                     |slot: u32| std::array::from_fn(|k| if free[slot as usize + k] { root * n[k] } else { 0.0 });
-                out.push(Coupling { slots, directions: slots.map(direction) });
+                let weights = [-1.0, 1.0, 0.0, 0.0];
+                out.push(Coupling { slots, weights, directions: slots.map(direction) });
             }
         }
     }

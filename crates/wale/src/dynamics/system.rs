@@ -9,10 +9,11 @@ use wale_numerics::block_pattern::BlockPattern;
 
 use super::chunks::Chunks;
 use super::terms::{AnyTerm, ChunkOutput, Term, Width};
-use crate::contact::{Compression, Nearby};
+use super::workspace::Workspace;
+use crate::contact::{Compression, Nearby, Strands};
 use crate::energy::{
     AnchoredSpring, Bending, Element, Foundation, Gravity, Inertia, LegContact, Load, ObstacleContact, ParallelSpring,
-    Rate, SelfContact, Shear, Spacing, StitchLength, Stretch, Thick, Wrapping,
+    Rate, SelfContact, Shear, Spacing, StitchLength, StrandContact, Stretch, Thick, Wrapping,
 };
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::elements::Elements;
@@ -53,6 +54,7 @@ pub struct System {
     pub(super) parallel: Term<ParallelSpring, 2>,
     pub(super) obstacles: Term<ObstacleContact, 3>,
     pub(super) self_contacts: Term<SelfContact, 6>,
+    pub(super) strand_contacts: Term<StrandContact, 12>,
     pub(super) loads: Term<Load, 3>,
     pub(super) bed: Term<Foundation, 1>,
     pub(super) compression: Compression,
@@ -63,35 +65,22 @@ pub struct System {
     /// Rest length \[m\] and mass \[kg\] of the yarn that belongs to each node in the initial layout.
     pub(super) yarn_at_node: Vec<f64>,
     pub(super) mass_at_node: Vec<f64>,
-    /// Where the nodes lie in the layout \[m\], and who has come near whom since.
+    /// Where the nodes are held by their neighbours, in the layout \[m\], and who has come near whom since.
     pub(super) layout: Vec<DVec3>,
     pub(super) nearby: Nearby,
+    pub(super) strands: Strands,
     /// Planar places of blocks for a coarse space: columns and rows of the chart.
     pub(super) chart_place: Vec<[f64; 2]>,
 }
 
 /// Number of terms.
-pub(super) const TERMS: usize = 16;
-
-/// Scratch memory of sums.
-#[derive(Default)]
-pub struct Workspace {
-    chunks: Vec<ChunkWork>,
-}
-
-#[derive(Default)]
-struct ChunkWork {
-    chunk: usize,
-    gradient: Vec<f64>,
-    energy: f64,
-    by_kind: Vec<(&'static str, f64)>,
-}
+pub(super) const TERMS: usize = 17;
 
 /// Name and energy \[J\] of every kind, in the order of reports.
 pub type Energies = [(&'static str, f64); KINDS.len()];
 
 /// Kinds of energy, in the order of reports.
-const KINDS: [&str; 15] = [
+const KINDS: [&str; 16] = [
     Stretch::NAME,
     Bending::NAME,
     LegContact::NAME,
@@ -107,6 +96,7 @@ const KINDS: [&str; 15] = [
     Rate::NAME,
     ObstacleContact::NAME,
     SelfContact::NAME,
+    StrandContact::NAME,
 ];
 
 impl System {
@@ -205,8 +195,10 @@ impl System {
             parallel: Term::new(parallel, &chunks),
             obstacles: Term::new(Elements::default(), &chunks),
             self_contacts: Term::new(Elements::default(), &chunks),
+            strand_contacts: Term::new(Elements::default(), &chunks),
             nearby: Nearby::default(),
-            layout: network.position.clone(),
+            strands: Strands::default(),
+            layout: network.places_held(),
             loads: Term::new(Elements::default(), &chunks),
             bed: Term::new(Elements::default(), &chunks),
             compression,
@@ -276,6 +268,7 @@ impl System {
             &self.parallel,
             &self.obstacles,
             &self.self_contacts,
+            &self.strand_contacts,
             &self.loads,
             &self.bed,
         ]
@@ -346,7 +339,7 @@ impl System {
     pub fn longest_step(&self, q: &[f64], direction: &[f64]) -> f64 {
         let segments = self.segments.set.stencils.par_iter().with_min_len(4096);
         let longest = segments.map(|stencil| longest_step(stencil, q, |dof| direction[dof]));
-        longest.reduce(|| f64::INFINITY, f64::min).min(1.0)
+        longest.reduce(|| f64::INFINITY, f64::min).min(self.longest_way(q, direction))
     }
 
     /// As [`System::longest_step`], for some segments.
@@ -417,29 +410,5 @@ fn add_to_kind(sums: &mut Vec<(&'static str, f64)>, kind: &'static str, energy: 
     match sums.iter_mut().find(|(name, _)| *name == kind) {
         Some((_, sum)) => *sum += energy,
         None => sums.push((kind, energy)),
-    }
-}
-
-impl Workspace {
-    fn prepare(&mut self, chunks: &Chunks) {
-        if self.chunks.len() != chunks.count() {
-            self.chunks = (0..chunks.count())
-                .map(|chunk| ChunkWork {
-                    chunk,
-                    gradient: vec![0.0; BLOCK * chunks.rows(chunk).len()],
-                    energy: 0.0,
-                    by_kind: Vec::with_capacity(KINDS.len()),
-                })
-                .collect();
-        }
-    }
-
-    /// Copies the rows' gradients together; the energies are added in the order of chunks.
-    fn collect(&self, chunks: &Chunks, gradient: &mut [f64]) -> f64 {
-        for work in &self.chunks {
-            let rows = chunks.rows(work.chunk);
-            gradient[BLOCK * rows.start..BLOCK * rows.end].copy_from_slice(&work.gradient);
-        }
-        self.chunks.iter().map(|work| work.energy).sum()
     }
 }

@@ -21,12 +21,14 @@ pub struct SelfContact {
 }
 
 impl SelfContact {
-    /// Depth \[m\] and unit vector from the first node to the second, if they touch.
+    /// Depth \[m\] and unit vector from the first node to the second, if they touch. Where the nodes coincide any direction is as good as
+    /// another; energy and gradient must agree that they touch.
     #[must_use]
     pub fn touch(&self, q: &[f64; 6]) -> Option<(f64, [f64; 3])> {
         let d = sub(point(q, 3), point(q, 0));
         let length = dot(d, d).sqrt();
-        (length < self.distance && length > 0.0).then(|| (self.distance - length, d.map(|x| x / length)))
+        let direction = if length > 0.0 { d.map(|x| x / length) } else { [0.0, 0.0, 1.0] };
+        (length < self.distance).then_some((self.distance - length, direction))
     }
 }
 
@@ -86,6 +88,16 @@ mod tests {
         let local = element.convex(&[0.0, 0.0, 0.0, 1.5, 0.0, 0.0]);
         assert!((local.energy - 0.375).abs() < 1e-15 && (local.gradient[0] - 1.5).abs() < 1e-15);
         assert_eq!(element.convex(&[0.0, 0.0, 0.0, 2.5, 0.0, 0.0]).energy, 0.0);
+    }
+
+    #[test]
+    fn nodes_that_coincide_touch() {
+        let element = SelfContact { stiffness: 3.0, distance: 2.0 };
+        let q = [0.3; 6];
+        let local = element.convex(&q);
+        assert_eq!(local.energy, element.energy(&q));
+        assert_eq!(local.energy, 6.0);
+        assert_eq!(local.gradient.map(f64::abs).iter().sum::<f64>(), 12.0);
     }
 
     #[test]

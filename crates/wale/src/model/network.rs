@@ -256,6 +256,25 @@ impl Network {
     pub fn is_out(&self, pass: PassId) -> bool {
         self.pulled_out.get(pass.index()).copied().unwrap_or(false)
     }
+    /// Where each node is held by its neighbours: its place in the layout \[m\], or for an end of a yarn that is out of contacts that of
+    /// the last of them.
+    #[must_use]
+    pub fn places_held(&self) -> Vec<DVec3> {
+        let mut places = self.position.clone();
+        for yarn in (0..self.yarn_count()).map(YarnId::new) {
+            let passes = self.yarn_passes(yarn);
+            let place = |pass: usize| self.position[self.pass_node[pass].index()];
+            let out = |pass: &usize| self.is_out(PassId::new(*pass));
+            let ends = [(passes.start, passes.clone().skip(1).take_while(out).last())];
+            let ends = ends.into_iter().chain([(passes.end - 1, passes.rev().skip(1).take_while(out).last())]);
+            for (end, left) in ends {
+                if let Some(left) = left {
+                    places[self.pass_node[end].index()] = place(left);
+                }
+            }
+        }
+        places
+    }
     /// The passes stacked at a node that are still there, front to back.
     pub fn live_stack(&self, node: NodeId) -> impl Iterator<Item = PassId> {
         self.stack(node).iter().copied().filter(|pass| !self.is_out(*pass))

@@ -61,6 +61,8 @@ pub struct Simulation {
     pub friction: bool,
     /// Whether parts of the fabric that are not knitted together keep out of each other.
     pub self_contact: bool,
+    /// Whether strands of a knit that share no contact keep out of each other, be they neighbours or not.
+    pub strand_contact: bool,
     /// Seed of the small disturbance of the initial layout; the same seed gives the same run.
     pub seed: u64,
     /// Longest time step \[s\].

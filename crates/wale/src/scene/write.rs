@@ -236,6 +236,7 @@ fn simulation(scene: &Scene) -> Written<SimulationText> {
         rest_shape_compensation: Some(settings.rest_shape_compensation),
         friction: Some(settings.friction),
         self_contact: Some(settings.self_contact),
+        strand_contact: Some(settings.strand_contact),
         seed: Some(narrow("seed", settings.seed)?),
         largest_step: some(settings.largest_step)?,
         smallest_step: some(settings.smallest_step)?,

@@ -16,7 +16,8 @@ use crate::dynamics::grips::{GripReport, Grips};
 use crate::dynamics::implicit_euler::{Newton, NewtonReport, NewtonSettings, StepError};
 use crate::dynamics::linear::LinearSettings;
 use crate::dynamics::step::Touch;
-use crate::dynamics::system::{Energies, System, Workspace};
+use crate::dynamics::system::{Energies, System};
+use crate::dynamics::workspace::Workspace;
 use crate::energy::Load;
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::model::{FabricCard, Frame, Network, Plan, Yarns};
@@ -83,6 +84,8 @@ const EASY: usize = 3;
 const HARD: usize = 8;
 /// A step whose last iteration still moved a node this far is taken again, shorter \[yarn radii\].
 const FAR_FROM_CONVERGED: f64 = 1.0;
+/// Attempts after which yarn that is pulled through other yarn is let through: the run goes on, and `wale check` tells of it.
+const MOST_REFUSED: u32 = 8;
 
 impl Simulation {
     /// Sets up a fabric at rest where its plan places it.
@@ -191,7 +194,7 @@ impl Simulation {
             let pieces = ((stop - self.state.time) / wanted - 1e-9).ceil().max(1.0);
             let h = (stop - self.state.time) / pieces;
             let end = if pieces > 1.0 { self.state.time + h } else { stop };
-            match self.attempt(h, end) {
+            match self.attempt(h, end, rejected < MOST_REFUSED) {
                 Ok(report) => {
                     let next = match report.iterations {
                         0..=EASY if rejected == 0 => wanted * 1.5,
@@ -213,14 +216,15 @@ impl Simulation {
         }
     }
 
-    /// Solves a step into `self.q` and leaves the state as it is.
-    fn attempt(&mut self, h: f64, end: f64) -> Result<NewtonReport, StepError> {
+    /// Solves a step into `self.q` and leaves the state as it is; one in which strands pass through each other may be refused.
+    fn attempt(&mut self, h: f64, end: f64, refuse_passages: bool) -> Result<NewtonReport, StepError> {
         self.renew_loads(h, end);
         let settings = &self.plan.simulation;
         self.system.begin_step(&self.state, h, settings.friction, &mut self.compression);
         self.system.find_touches(&self.plan.obstacles, &self.state, h, &mut self.touches);
         if settings.self_contact {
             self.system.find_self_contacts(&self.state, h);
+            self.system.find_strand_contacts(&self.state, h);
         }
         self.free.copy_from_slice(self.system.coordinates.free());
         // Start where the velocities lead, as far as the order of the nodes along the yarns allows.
@@ -244,6 +248,9 @@ impl Simulation {
         })?;
         if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.least_radius() {
             return Err(StepError::NotConverged { last_move: report.last_move });
+        }
+        if refuse_passages && self.system.strands_pass(&self.state.coordinates, &self.q) {
+            return Err(StepError::Passage);
         }
         Ok(report)
     }
@@ -337,6 +344,9 @@ impl Simulation {
 fn equations(network: &Network, yarns: impl Into<Yarns>, card: impl Into<FabricCard>, plan: &Plan) -> (System, Newton) {
     let mut system = System::new(network, yarns, card);
     system.set_gravity(plan.simulation.gravity);
+    if plan.simulation.strand_contact {
+        system.keep_strands_apart(network);
+    }
     let linear = LinearSettings { solver: plan.simulation.linear_solver, tolerance: plan.simulation.linear_tolerance };
     let newton = Newton::new(&system, linear);
     (system, newton)

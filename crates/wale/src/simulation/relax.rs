@@ -58,7 +58,7 @@ impl Simulation {
         while report.steps < MOST_STEPS && h > self.plan.simulation.smallest_step {
             self.state.velocities.fill(0.0);
             report.steps += 1;
-            match self.attempt(h, time) {
+            match self.attempt(h, time, true) {
                 Err(_) => h *= 0.25,
                 Ok(newton) => {
                     report.newton_iterations += newton.iterations;

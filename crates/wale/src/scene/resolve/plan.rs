@@ -24,6 +24,7 @@ pub(super) fn simulation(text: &SimulationText) -> Result<Simulation, Complaint>
         rest_shape_compensation: text.rest_shape_compensation.unwrap_or(true),
         friction: text.friction.unwrap_or(true),
         self_contact: text.self_contact.unwrap_or(true),
+        strand_contact: text.strand_contact.unwrap_or(false),
         seed: u64::from(text.seed.unwrap_or(1)),
         largest_step: si(text.largest_step).unwrap_or(5e-3),
         smallest_step: si(text.smallest_step).unwrap_or(1e-6),

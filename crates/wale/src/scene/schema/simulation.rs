@@ -42,6 +42,10 @@ pub struct SimulationText {
     /// Whether parts of the fabric that are not knitted together keep out of each other; true if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub self_contact: Option<bool>,
+    /// Whether neighbouring strands of a knit that share no contact keep out of each other too, as in lace; a step then takes about
+    /// twice as long. false if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strand_contact: Option<bool>,
     /// Seed of the small disturbance of the initial layout; 1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u32>,

@@ -1,0 +1,277 @@
+//! Strands of yarn that come near each other between their nodes, where no contact of the network joins them.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::Nearby;
+use crate::energy::strand_contact::closest;
+use crate::model::{Network, NodeId, PassId, Yarns};
+
+/// Distance at which strands begin to push each other apart, as a share of that at which they touch.
+const BEGINS: f64 = 0.9;
+/// The same as a share of their distance in the layout, so that the layout is not pushed apart.
+const OF_LAYOUT: f64 = 0.8;
+/// Strands nearer than this share of touching in the layout lie through each other there: nothing tells them apart.
+const NOTHING: f64 = 0.02;
+/// How much further than needed strands are looked for, and the most that their speed adds to it, in yarn radii.
+const MARGIN: f64 = 0.7;
+const MOST_MARGIN: f64 = 4.0;
+/// Pairs of a part.
+const PART: usize = 8192;
+/// How far the yarns of a stitch contact lie aside of its axis, in yarn radii: they are led around each other.
+const ASIDE: f64 = 0.7;
+/// Below this share of the flattest possible fit, a node's own normal gives way to its neighbours'.
+const TRUSTED: f64 = 0.05;
+
+/// Two strands that may meet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearStrands {
+    /// Nodes at their ends.
+    pub nodes: [u32; 4],
+    /// Where the strands lie beside these \[m\].
+    pub offsets: [[f64; 3]; 4],
+    /// Distance below which they push each other apart \[m\].
+    pub distance: f64,
+}
+
+/// A segment of yarn.
+#[derive(Clone, Copy, Debug)]
+struct Strand {
+    nodes: [u32; 2],
+    /// The contacts at its ends.
+    contacts: [u32; 2],
+    /// How far in front of the nodes it lies \[m\].
+    heights: [f64; 2],
+    radius: f64,
+    /// How far it is led aside in a stitch contact, to the left of its way as seen from the front \[m\].
+    aside: f64,
+    /// Where it lies in the layout.
+    layout: [DVec3; 2],
+}
+
+impl Strand {
+    /// Where its ends lie beside their nodes, which are at `ends` and have these normals.
+    fn offsets(&self, ends: [DVec3; 2], normals: [DVec3; 2]) -> [DVec3; 2] {
+        let left = (normals[0] + normals[1]).cross(ends[1] - ends[0]).normalize_or_zero();
+        std::array::from_fn(|k| normals[k] * self.heights[k] + left * self.aside)
+    }
+}
+
+/// The segments of a knit. Where each loop holds its neighbours, contacts keep them apart; where some hang free, as yarn-overs do, or
+/// are worked together, they may meet between.
+#[derive(Clone, Debug, Default)]
+pub struct Strands {
+    strands: Vec<Strand>,
+    middles: Vec<DVec3>,
+    /// For each node the nodes next to it along its yarns, and where they are in the layout, along two directions that make
+    /// a right-handed frame with the front.
+    around: Vec<(u32, [f64; 2])>,
+    around_start: Vec<u32>,
+    fits: Vec<(DVec3, f64)>,
+    normals: Vec<DVec3>,
+    nearby: Nearby,
+    /// What was found by parts of the pairs, and all of it.
+    parts: Vec<Vec<NearStrands>>,
+    found: Vec<NearStrands>,
+}
+
+impl Strands {
+    /// The strands of a knit; none of a weave or of a tile.
+    #[must_use]
+    pub fn new(network: &Network, yarns: &Yarns) -> Self {
+        let nodes = 0..network.node_count();
+        if network.stitches.is_empty() || network.periods.is_some() {
+            return Self::default();
+        }
+        let mut contact: Vec<u32> = (0..network.node_count() as u32).collect();
+        for stitch in &network.stitches {
+            contact[stitch.nodes[1].index()] = stitch.nodes[0].0;
+        }
+        let yarn_of = network.pass_yarn();
+        let radius = |pass: PassId| yarns.of(network.yarn_kind[yarn_of[pass.index()].index()]).radius;
+        let mut heights = vec![0.0; network.pass_count()];
+        for node in nodes {
+            let thickness: f64 = network.live_stack(NodeId::new(node)).map(|pass| 2.0 * radius(pass)).sum();
+            let mut above = 0.0;
+            for pass in network.live_stack(NodeId::new(node)) {
+                above += 2.0 * radius(pass);
+                heights[pass.index()] = 0.5 * thickness - above + radius(pass);
+            }
+        }
+        let to_the_left = clasps(network);
+        let mut strands = Vec::new();
+        let mut pairs = Vec::new();
+        for pass in (0..network.pass_count()).map(PassId::new) {
+            let next = network.neighbour(yarn_of[pass.index()], pass, 1);
+            let Some(next) = next.filter(|_| !network.is_out(pass)) else { continue };
+            let ends = [pass, next.pass];
+            let nodes = ends.map(|pass| network.pass_node[pass.index()]);
+            if nodes[0] == nodes[1] {
+                continue;
+            }
+            let mut strand = Strand {
+                nodes: nodes.map(|node| node.0),
+                contacts: nodes.map(|node| contact[node.index()]),
+                heights: ends.map(|pass| heights[pass.index()]),
+                radius: radius(pass),
+                aside: ASIDE * radius(pass) * to_the_left[pass.index()],
+                layout: nodes.map(|node| network.position[node.index()]),
+            };
+            let offsets = strand.offsets(strand.layout, nodes.map(|node| network.front[node.index()]));
+            strand.layout = [0, 1].map(|k| strand.layout[k] + offsets[k]);
+            strands.push(strand);
+            pairs.extend([(nodes[0], nodes[1]), (nodes[1], nodes[0])]);
+        }
+        pairs.sort_unstable_by_key(|(node, _)| node.0);
+        let around = pairs.iter().map(|&(node, other)| {
+            let front = network.front[node.index()].normalize_or(DVec3::Z);
+            let first = front.any_orthonormal_vector();
+            let rest = (network.position[other.index()] - network.position[node.index()]).normalize_or_zero();
+            (other.0, [rest.dot(first), rest.dot(front.cross(first))])
+        });
+        let start = |node: u32| pairs.partition_point(|(of, _)| of.0 < node) as u32;
+        Self {
+            middles: strands.iter().map(|strand| 0.5 * (strand.layout[0] + strand.layout[1])).collect(),
+            around: around.collect(),
+            around_start: (0..=network.node_count() as u32).map(start).collect(),
+            fits: Vec::new(),
+            normals: Vec::new(),
+            nearby: Nearby::default(),
+            parts: Vec::new(),
+            found: Vec::new(),
+            strands,
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.strands.is_empty()
+    }
+
+    /// The strands that may meet in a time `h` \[s\], in a fixed order. `at` is where a node is \[m\], `velocity` how it
+    /// moves \[m/s\].
+    pub fn find(
+        &mut self,
+        at: impl Fn(usize) -> DVec3 + Sync,
+        velocity: impl Fn(usize) -> DVec3 + Sync,
+        h: f64,
+    ) -> &[NearStrands] {
+        self.find_normals(&at);
+        let (strands, normals) = (&self.strands, &self.normals);
+        let ends = |index: usize| strands[index].nodes.map(|node| at(node as usize));
+        let middle = |index: usize| {
+            let [a, b] = ends(index);
+            0.5 * (a + b)
+        };
+        let size = |index: usize| {
+            let [a, b] = ends(index);
+            a.distance(b)
+        };
+        let longest = (0..strands.len()).into_par_iter().map(size).reduce(|| 0.0, f64::max);
+        let thickest = strands.iter().map(|strand| strand.radius).fold(0.0, f64::max);
+        let reach = longest + (2.0 * BEGINS + 2.0 + MOST_MARGIN) * thickest;
+        let pairs = self.nearby.find(middle, &self.middles, reach, 0.0);
+        let near = |pair: &[u32; 2]| {
+            let [a, b] = pair.map(|index| &strands[index as usize]);
+            if a.contacts.iter().any(|contact| b.contacts.contains(contact)) {
+                return None;
+            }
+            let touching = a.radius + b.radius;
+            let nodes = [a.nodes[0], a.nodes[1], b.nodes[0], b.nodes[1]];
+            let ways = nodes.map(|node| h * velocity(node as usize));
+            let fastest = [(0, 2), (0, 3), (1, 2), (1, 3)].map(|(i, k)| (ways[i] - ways[k]).length_squared());
+            let moved = fastest.into_iter().fold(0.0, f64::max).sqrt();
+            let margin = MARGIN * touching + (1.5 * moved).min(MOST_MARGIN * 0.5 * touching);
+            let beside = |strand: &Strand| {
+                strand.offsets(
+                    strand.nodes.map(|node| at(node as usize)),
+                    strand.nodes.map(|node| normals[node as usize]),
+                )
+            };
+            let [[a0, a1], [b0, b1]] = [beside(a), beside(b)];
+            let offsets = [a0, a1, b0, b1];
+            let ends: [[f64; 3]; 4] = std::array::from_fn(|k| (at(nodes[k] as usize) + offsets[k]).to_array());
+            // Boxes that are further apart than they look for each other need no closer look.
+            let apart = (0..3).any(|k| {
+                let [low, high] = [ends[0][k].min(ends[1][k]), ends[0][k].max(ends[1][k])];
+                let reach = BEGINS * touching + margin;
+                low > ends[2][k].max(ends[3][k]) + reach || high < ends[2][k].min(ends[3][k]) - reach
+            });
+            if apart || closest(&ends).distance > BEGINS * touching + margin {
+                return None;
+            }
+            let layout = [a.layout[0], a.layout[1], b.layout[0], b.layout[1]].map(|x| x.to_array());
+            let layout = closest(&layout).distance;
+            let distance = (BEGINS * touching).min(OF_LAYOUT * layout);
+            (layout > NOTHING * touching).then_some(NearStrands {
+                nodes,
+                offsets: offsets.map(|x| x.to_array()),
+                distance,
+            })
+        };
+        self.parts.resize_with(pairs.len().div_ceil(PART), Vec::new);
+        self.parts.par_iter_mut().zip(pairs.par_chunks(PART)).for_each(|(part, pairs)| {
+            part.clear();
+            part.extend(pairs.iter().filter_map(near));
+        });
+        self.found.clear();
+        self.found.extend(self.parts.iter().flatten());
+        &self.found
+    }
+
+    /// Normals of all nodes to the front of the fabric, as pictures of yarns have them.
+    fn find_normals(&mut self, at: &impl Fn(usize) -> DVec3) {
+        let around = |node: usize| {
+            let range = self.around_start[node] as usize..self.around_start[node + 1] as usize;
+            self.around[range].iter()
+        };
+        self.fits.clear();
+        self.fits.extend((0..self.around_start.len() - 1).map(|node| {
+            let (mut first, mut second) = (DVec3::ZERO, DVec3::ZERO);
+            for &(other, rest) in around(node) {
+                let now = (at(other as usize) - at(node)).normalize_or_zero();
+                first += now * rest[0];
+                second += now * rest[1];
+            }
+            let area = first.cross(second);
+            let flatness = 2.0 * area.length() / (first.length_squared() + second.length_squared()).max(1e-300);
+            (area.normalize_or_zero(), (flatness / TRUSTED).min(1.0))
+        }));
+        self.normals.clear();
+        self.normals.extend((0..self.fits.len()).map(|node| {
+            let (normal, trust) = self.fits[node];
+            if trust >= 1.0 {
+                return normal;
+            }
+            let sum = around(node).map(|&(other, _)| self.fits[other as usize].0 * self.fits[other as usize].1);
+            (normal * trust + sum.sum::<DVec3>().normalize_or_zero() * (1.0 - trust)).normalize_or_zero()
+        }));
+    }
+}
+
+/// On which side of the axis of a stitch contact the segment after each pass lies, seen from the front along its way: 1 to the
+/// left, −1 to the right, and zero outside contacts. A yarn that changes from the front of another to its back goes around it.
+fn clasps(network: &Network) -> Vec<f64> {
+    let mut sides = vec![0.0; network.pass_count()];
+    for stitch in &network.stitches {
+        let depth = |end: usize, pass: PassId| network.live_stack(stitch.nodes[end]).position(|p| p == pass);
+        let depths: Vec<_> = stitch.passes.iter().map(|[a, b]| [depth(0, *a), depth(1, *b)]).collect();
+        for ([a, b], own) in stitch.passes.iter().zip(&depths) {
+            let turns = depths.iter().map(|other| match (own[0].cmp(&other[0]), own[1].cmp(&other[1])) {
+                (Ordering::Less, Ordering::Greater) => 1.0,
+                (Ordering::Greater, Ordering::Less) => -1.0,
+                _ => 0.0,
+            });
+            let turns: f64 = turns.sum();
+            if turns != 0.0 {
+                // Along the axis from the first node to the second, left is what the drawn yarn is led to.
+                let along = if a.0 < b.0 { 1.0 } else { -1.0 };
+                sides[a.0.min(b.0) as usize] = along * turns.signum() * stitch.wrap_sign;
+            }
+        }
+    }
+    sides
+}
