@@ -16,7 +16,7 @@ const EDGE: f64 = 0.1;
 /// What was fitted.
 #[derive(Clone, Debug)]
 pub struct FabricFit {
-    /// In-plane stiffnesses, by clamped stretch tests of the specimens' sizes.
+    /// In-plane stiffnesses, by stretch tests as they were made: between clamps, at the specimens' sizes, or uniform.
     pub membrane: MembraneFit,
     /// Bending stiffnesses, if loops were measured and the mass is known.
     pub bending: Option<BendingFit>,
@@ -54,6 +54,7 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
         return Err(FabricFitError::NoStretchTest);
     }
     let mut open = fabric.gaps();
+    open.extend(fabric.assumed.iter().map(|what| format!("assumed: {what}")));
     let measured: Vec<MeasuredStretch> = fabric
         .stretch
         .iter()
@@ -76,7 +77,7 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
             };
             MeasuredStretch {
                 curve: StretchCurve { angle: test.direction, points },
-                test: StretchTest::Clamped(clamped),
+                test: if test.uniform { StretchTest::Uniform } else { StretchTest::Clamped(clamped) },
                 compression: test.curve.compression.is_some(),
             }
         })
@@ -120,8 +121,12 @@ pub fn fit_fabric(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result
         areal_mass: fabric.areal_mass,
         membrane: membrane.stiffness,
         membrane_within: membrane.least_squares.uncertainty,
-        bending: bending.as_ref().map(|fit| fit.stiffness),
+        // B = 2k_θ.
+        bending: bending.as_ref().map(|fit| fit.stiffness).or_else(|| {
+            fabric.bending_stiffness.map(|three| BendingStiffness::from_array(three.map(|rigidity| 0.5 * rigidity)))
+        }),
         yarn: None,
+        open: open.clone(),
     };
     Ok(FabricFit { membrane, bending, card, open })
 }

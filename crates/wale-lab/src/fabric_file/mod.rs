@@ -43,6 +43,10 @@ pub struct FabricFile {
     pub title: String,
     /// Mass per area \[kg/m²\], if known.
     pub areal_mass: Option<f64>,
+    /// Flexural rigidity `B` along weft, bias and warp \[N·m\], where an instrument told it and not loops.
+    pub bending_stiffness: Option<[f64; 3]>,
+    /// What of all this was not measured of this fabric, in words.
+    pub assumed: Vec<String>,
     /// What it is made of.
     pub yarns: Vec<Yarn>,
     /// How its yarns lie, if known.
@@ -88,8 +92,10 @@ pub enum Structure {
 pub struct StretchTest {
     /// Angle of the pull from the weft \[rad\].
     pub direction: f64,
-    /// What was clamped.
+    /// What was clamped; of uniform stretch, a metre of width.
     pub specimen: Specimen,
+    /// Whether it was stretched uniformly, without stress across, and not between clamps.
+    pub uniform: bool,
     /// What was measured.
     pub curve: StretchCurve,
 }
@@ -148,7 +154,7 @@ impl FabricFile {
             } else if of.iter().all(|test| test.curve.compression.is_none()) {
                 gaps.push(format!("no orthogonal compression along the {name}"));
             }
-            if !self.bending.iter().any(|test| near(test.direction)) {
+            if self.bending_stiffness.is_none() && !self.bending.iter().any(|test| near(test.direction)) {
                 gaps.push(format!("no bending test along the {name}"));
             }
         }

@@ -24,6 +24,10 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         let what = format!("schema {} is not known", text.schema);
         return Err(file.error("schema", what, format!("write schema = {SCHEMA}")).into());
     }
+    if text.bending_stiffness.is_some() && !text.bending.is_empty() {
+        let what = "bending is given twice, by loops and as a stiffness".to_owned();
+        return Err(file.error("bending_stiffness", what, "leave it out: loops tell it").into());
+    }
     let mut inputs = vec![path.to_owned()];
     let yarns: Vec<Yarn> = text.yarn.iter().map(yarn).collect();
     let shares: Vec<f64> = yarns.iter().filter_map(|yarn| yarn.share).collect();
@@ -39,12 +43,22 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
     let mut stretch = Vec::new();
     for (index, test) in text.stretch.iter().enumerate() {
         let read = Reading::of(test, &format!("stretch.{index}"), file, &mut inputs)?;
-        let curve = StretchCurve::of(&read.table, &read.request, read.specimen)?;
-        stretch.push(StretchTest { direction: read.direction, specimen: read.specimen, curve });
+        let mut curve = StretchCurve::of(&read.table, &read.request, read.specimen)?;
+        let mut specimen = read.specimen;
+        if test.uniform {
+            // Force goes with width.
+            curve.force.iter_mut().for_each(|force| *force /= specimen.width);
+            specimen.width = 1.0;
+        }
+        stretch.push(StretchTest { direction: read.direction, specimen, uniform: test.uniform, curve });
     }
     let mut bending = Vec::new();
     for (index, test) in text.bending.iter().enumerate() {
         let read = Reading::of(test, &format!("bending.{index}"), file, &mut inputs)?;
+        if test.uniform {
+            let what = "a loop is clamped".to_owned();
+            return Err(file.error(&format!("bending.{index}.uniform"), what, "leave it out").into());
+        }
         let curve = LoopCurve::of(&read.table, &read.request)?;
         bending.push(LoopTest { direction: read.direction, specimen: read.specimen, curve });
     }
@@ -53,6 +67,8 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
     Ok(FabricFile {
         title: text.title.unwrap_or_default(),
         areal_mass: text.areal_mass.map(Quantity::si),
+        bending_stiffness: text.bending_stiffness.map(|three| three.map(Quantity::si)),
+        assumed: text.assumed,
         yarns,
         structure,
         spacing: spacing.map(|spacing| spacing.map(Quantity::si)),

@@ -11,15 +11,15 @@ use std::path::{Path, PathBuf};
 use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
 use wale::scene::Scene;
-use wale_lab::card_file::YarnCard;
+use wale_lab::card_file::{CardFile, YarnCard};
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
 use wale_lab::fabric_fit::{FabricFit, FabricFitError, fit_fabric};
 use wale_lab::network_fit::NetworkFit;
-use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::membrane_fit::{MembraneFitSettings, MembraneLaw};
 use wale_lab::yarn_fit::run::YarnFit;
 use wale_lab::yarn_tile::{YarnTile, write_pattern};
 
-use crate::arguments::fit::Fit;
+use crate::arguments::fit::{Fit, Law};
 use crate::exit::{Code, Failure};
 use crate::opened::scene_failure;
 use crate::{machine, output, say};
@@ -57,7 +57,7 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
     if with_yarn {
         yarn::check(arguments, &fabric)?;
     }
-    let mut shell = fit_shell(&arguments.fabric, &fabric)?;
+    let mut shell = fit_shell(arguments, &fabric)?;
     let problem = if with_yarn { Some(yarn::problem_of(arguments, &fabric, &shell, &folder)?) } else { None };
     let yarn = match (problem, arguments.elsewhere.ask) {
         (Some(problem), true) => return questions::print(&yarn::ask(arguments, &folder, &problem)?),
@@ -76,8 +76,13 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
     deliver(arguments, &folder, &fabric, &Fitted { shell, yarn, network })
 }
 
-fn fit_shell(path: &Path, fabric: &FabricFile) -> Result<FabricFit, Failure> {
-    let settings = MembraneFitSettings { targets: yarn::TARGETS, ..MembraneFitSettings::default() };
+fn fit_shell(arguments: &Fit, fabric: &FabricFile) -> Result<FabricFit, Failure> {
+    let path = &arguments.fabric;
+    let law = match arguments.law {
+        Law::Quadratic => MembraneLaw::Quadratic,
+        Law::Stiffening => MembraneLaw::Stiffening,
+    };
+    let settings = MembraneFitSettings { law, targets: yarn::TARGETS, ..MembraneFitSettings::default() };
     fit_fabric(fabric, &settings).map_err(|error| {
         let code = match error {
             FabricFitError::NoStretchTest => Code::BadInput,
@@ -122,7 +127,8 @@ fn deliver(
         write(&folder.join("swatch.toml"), text.as_bytes())?;
     }
     // Last: a folder with a card has all the rest.
-    write(&folder.join("card.toml"), shell.card.to_toml().as_bytes())?;
+    let card = CardFile { open: shell.open.clone(), ..shell.card.clone() };
+    write(&folder.join("card.toml"), card.to_toml().as_bytes())?;
     if arguments.json {
         return output::json(&tell::found_json(folder, shell, fit, contacts));
     }

@@ -80,7 +80,8 @@ pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
     if needs.mass && mass.is_none() {
         return Err(lacks("mass by area", "--areal-mass \"170 g/m^2\""));
     }
-    let mut remarks = Vec::new();
+    let assumed = card.open.iter().filter(|what| what.starts_with("assumed: "));
+    let mut remarks: Vec<String> = assumed.cloned().collect();
     let open: Vec<&str> = MembraneStiffness::NAMES
         .into_iter()
         .zip(card.membrane_within)
@@ -102,14 +103,17 @@ pub fn card(arguments: &Common, needs: Needs) -> Result<Card, Failure> {
     Ok(Card { title: card.title, shell, remarks })
 }
 
-/// Where `wale fit` puts the card of a fabric file.
+/// The card of a fabric file: where `wale fit` puts it, or the one kept beside the file.
 fn fitted(fabric: &Path) -> Result<PathBuf, Failure> {
     let card = fabric.with_extension("fit").join("card.toml");
-    if card.is_file() {
-        return Ok(card);
+    let kept = fabric.with_file_name("card.toml");
+    for card in [&card, &kept] {
+        if card.is_file() {
+            return Ok(card.clone());
+        }
     }
     let message = format!(
-        "{} has no card yet, {} is not there: run `wale fit {}` first",
+        "{} has no card yet, neither {} nor card.toml beside it: run `wale fit {}` first",
         fabric.display(),
         card.display(),
         fabric.display()
