@@ -271,7 +271,8 @@ fn bad_input_ends_with_one_error_and_its_mend() {
     }
     let fabric = folder.path().join("fabric.toml");
     let fabric = fabric.to_str().unwrap();
-    let card = folder.path().join("card.toml");
+    // Not named `card.toml`: that would be the fabric's own.
+    let card = folder.path().join("suiting.toml");
     write_card(&card);
     let without = folder.path().join("without.toml");
     let text = fs::read_to_string(&card).unwrap();
@@ -293,5 +294,5 @@ fn bad_input_ends_with_one_error_and_its_mend() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", error(&output));
         assert!(error(&output).contains(says), "{says}: {}", error(&output));
     }
-    assert!(!folder.path().join("card.lab").exists() && !folder.path().join("fabric.lab").exists());
+    assert!(!folder.path().join("suiting.lab").exists() && !folder.path().join("fabric.lab").exists());
 }

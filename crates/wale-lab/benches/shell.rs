@@ -9,7 +9,8 @@ use wale_lab::shell::rest::come_to_rest;
 use wale_lab::shell::{ClampedStretch, OutOfPlane, RestSettings, ShellCard, ShellSystem};
 
 fn main() {
-    let membrane = MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0 };
+    let membrane =
+        MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0, ..MembraneStiffness::NONE };
     let card = ShellCard { membrane, bending: BendingStiffness::isotropic(2e-6), areal_mass: 0.2 };
     let edge = 1.66e-3;
     let rectangle = Rectangle::new(0.1, 0.06, edge).expect("a rectangle");

@@ -169,7 +169,8 @@ fn main() -> Result<(), Failure> {
             let silent = |_: &wale_lab::yarn_fit::Step| {};
             let round = Round { starts: 1, evaluations: 12, samples: 4 };
             let from = RodSpace::coordinates(parameters);
-            let Ok(found) = improve(garter, &Here::new(garter), from, &round, 0.01, &Progress::new(&silent));
+            let Ok(found) =
+                improve(std::slice::from_ref(garter), &Here::new(garter), from, &round, 0.01, &Progress::new(&silent));
             let found = RodSpace::parameters(found.ok_or("the tile could not be tested")?.coordinates);
             println!("garter, fitted from there in {:.0} s: {found:?}", begun.elapsed().as_secs_f64());
             println!("  {:?}", judge(garter, found));

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use wale_lab::shell::membrane_fit::{MeasuredStretch, MembraneFitSettings, StretchTest, fit_membrane};
+use wale_lab::shell::membrane_fit::{MeasuredStretch, MembraneFitSettings, MembraneLaw, StretchTest, fit_membrane};
 use wale_lab::shell::{StretchCurve, StretchPoint};
 
 fn main() -> ExitCode {
@@ -24,18 +24,27 @@ fn main() -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    for law in [MembraneLaw::Quadratic, MembraneLaw::Stiffening] {
+        println!("\n{law:?}");
+        table(&text, law);
+    }
+    ExitCode::SUCCESS
+}
+
+fn table(text: &str, law: MembraneLaw) {
     println!("Errors are means over six targets a direction, over the mean measured value. Stiffnesses in N/m.");
     println!(
         "{:20} {:>7} {:>7}  {:>52}  not determined within a factor of three",
-        "fabric", "force", "compr.", "k_xx k_xy k_yy k_ss k_n1 k_n2"
+        "fabric", "force", "compr.", "k_xx k_xy k_yy k_ss k_n1 k_n2, m_xx m_yy m_ss m_xy"
     );
     let (mut sum, mut count) = ([0.0; 2], 0.0);
-    for (fabric, curves) in read(&text) {
+    for (fabric, curves) in read(text) {
         let uniform = |curve| MeasuredStretch::new(curve, StretchTest::Uniform);
         let curves: Vec<_> = curves.into_iter().map(uniform).collect();
-        match fit_membrane(&curves, &MembraneFitSettings::default()) {
+        match fit_membrane(&curves, &MembraneFitSettings { law, ..MembraneFitSettings::default() }) {
             Ok(fit) => {
-                let k: String = fit.stiffness.to_array().iter().map(|k| format!("{k:9.3}")).collect();
+                let k: String =
+                    fit.stiffness.to_array()[..fit.stiffness.used()].iter().map(|k| format!("{k:9.3}")).collect();
                 let errors = [fit.force_error, fit.compression_error];
                 println!(
                     "{fabric:20} {:6.1}% {:6.1}% {k}  {}",
@@ -52,7 +61,6 @@ fn main() -> ExitCode {
     let [force, compression] = sum.map(|sum| 100.0 * sum / count);
     println!("{:20} {force:6.1}% {compression:6.1}%", "mean");
     println!("{:20} {:6.1}% {:6.1}%  its 33 knits, clamped swatches", "[Sperl2022]", 17.6, 16.8);
-    ExitCode::SUCCESS
 }
 
 /// Curves by fabric, from rows of fabric, direction, strain, contraction and tension; direction ends in its angle in degrees.

@@ -54,6 +54,8 @@ pub struct CardFile {
     pub bending: Option<BendingStiffness>,
     /// Its yarn, if it was fitted.
     pub yarn: Option<YarnCard>,
+    /// What its tests left open, and what was assumed and not measured, in words.
+    pub open: Vec<String>,
 }
 
 #[derive(Deserialize)]
@@ -100,6 +102,8 @@ struct Text {
     schema: u32,
     title: String,
     areal_mass: Option<Quantity<ArealMass, Positive>>,
+    #[serde(default)]
+    open: Vec<String>,
     shell: ShellText,
     yarn: Option<YarnText>,
 }
@@ -113,7 +117,11 @@ struct ShellText {
     k_ss: Quantity<ForcePerLength, Positive>,
     k_n1: Quantity<ForcePerLength, Any>,
     k_n2: Quantity<ForcePerLength, Any>,
-    within: [f64; MembraneStiffness::COUNT],
+    m_xx: Option<Quantity<ForcePerLength, NotNegative>>,
+    m_yy: Option<Quantity<ForcePerLength, NotNegative>>,
+    m_ss: Option<Quantity<ForcePerLength, NotNegative>>,
+    m_xy: Option<Quantity<Ratio, Any>>,
+    within: Vec<f64>,
     bending: Option<[Quantity<SheetBending, Positive>; BendingStiffness::COUNT]>,
 }
 
@@ -125,11 +133,28 @@ impl CardFile {
         if let Some(mass) = self.areal_mass {
             let _ = writeln!(text, "areal_mass = \"{mass:?} kg/m^2\"");
         }
-        text.push_str("\n# A thin shell [Sperl2022, Eqs. 1 and 4]: x along the weft, y along the warp.\n[shell]\n");
-        for (name, value) in MembraneStiffness::NAMES.into_iter().zip(self.membrane.to_array()) {
-            let _ = writeln!(text, "{name} = \"{value:?} N/m\"");
+        if !self.open.is_empty() {
+            text.push_str("# What the tests left open, and what was not measured of this fabric.\nopen = [\n");
+            self.open.iter().for_each(|what| {
+                let _ = writeln!(text, "    {},", toml_string(what));
+            });
+            text.push_str("]\n");
         }
-        let within: Vec<String> = self.membrane_within.iter().map(|&factor| number(factor)).collect();
+        text.push_str("\n# A thin shell [Sperl2022, Eqs. 1 and 4]: x along the weft, y along the warp.\n[shell]\n");
+        let used = self.membrane.used();
+        for (k, (name, value)) in
+            MembraneStiffness::NAMES.into_iter().zip(self.membrane.to_array()).enumerate().take(used)
+        {
+            let _ = match k {
+                MembraneStiffness::QUADRATIC => {
+                    text.push_str("# It becomes stiffer as it is stretched.\n");
+                    writeln!(text, "{name} = \"{value:?} N/m\"")
+                }
+                k if k + 1 == MembraneStiffness::COUNT => writeln!(text, "{name} = {value:?}"),
+                _ => writeln!(text, "{name} = \"{value:?} N/m\""),
+            };
+        }
+        let within: Vec<String> = self.membrane_within.iter().take(used).map(|&factor| number(factor)).collect();
         text.push_str(
             "# Each may be so many times larger or smaller, with 95 % confidence; inf where the tests do not tell.\n",
         );
@@ -161,13 +186,30 @@ impl CardFile {
         let shell = text.shell;
         let values =
             [shell.k_xx.si(), shell.k_xy.si(), shell.k_yy.si(), shell.k_ss.si(), shell.k_n1.si(), shell.k_n2.si()];
+        let of = |stiffening: Option<Quantity<ForcePerLength, NotNegative>>| stiffening.map_or(0.0, Quantity::si);
+        let membrane = MembraneStiffness {
+            stiffening_xx: of(shell.m_xx),
+            stiffening_yy: of(shell.m_yy),
+            stiffening_ss: of(shell.m_ss),
+            stiffening_xy: shell.m_xy.map_or(0.0, Quantity::si),
+            ..MembraneStiffness::quadratic(values)
+        };
+        if shell.within.len() != membrane.used() {
+            let (has, used) = (shell.within.len(), membrane.used());
+            let what = format!("`within` has {has} factors for {used} stiffnesses");
+            return Err(file.error("shell.within", what, "give one for each, in their order".to_owned()));
+        }
+        // What the card does not have is zero, and is known to be.
+        let mut within = [1.0; MembraneStiffness::COUNT];
+        within.iter_mut().zip(&shell.within).for_each(|(factor, given)| *factor = *given);
         Ok(Self {
             title: text.title,
             areal_mass: text.areal_mass.map(Quantity::si),
-            membrane: MembraneStiffness::from_array(values),
-            membrane_within: shell.within,
+            membrane,
+            membrane_within: within,
             bending: shell.bending.map(|three| BendingStiffness::from_array(three.map(Quantity::si))),
             yarn: text.yarn.map(YarnText::card),
+            open: text.open,
         })
     }
 }
@@ -228,10 +270,19 @@ mod tests {
         let card = CardFile {
             title: "\"Jersey\" \\ 2\u{1}".to_owned(),
             areal_mass: Some(0.17),
-            membrane: MembraneStiffness { xx: 12.0 / 7.0, xy: 0.3, yy: 1e2, ss: 5e-3, n1: 0.0, n2: 2.5 },
-            membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9],
+            membrane: MembraneStiffness {
+                xx: 12.0 / 7.0,
+                xy: 0.3,
+                yy: 1e2,
+                ss: 5e-3,
+                n1: 0.0,
+                n2: 2.5,
+                ..MembraneStiffness::NONE
+            },
+            membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.0, 1.0, 1.0, 1.0],
             bending: Some(BendingStiffness { weft: 1e-6, bias: 2e-6, warp: 1.0 / 3e5 }),
             yarn: None,
+            open: vec!["k_ss is \"open\"".to_owned(), "assumed: all".to_owned()],
         };
         let material = RodMaterial {
             onset: 0.07,
@@ -242,7 +293,12 @@ mod tests {
         let within = [1.0, 2.0, f64::INFINITY, 1.5, 1.1, 7.0, 2.0];
         let yarn = Some(YarnCard { material, within, tile: "tile.pyp".to_owned() });
         let whole = CardFile { yarn, ..card.clone() };
-        for card in [CardFile { areal_mass: None, bending: None, ..card.clone() }, card, whole] {
+        let stiffens = CardFile {
+            membrane: MembraneStiffness { stiffening_xx: 1.5, stiffening_xy: 1.0 / 3.0, ..card.membrane },
+            membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.5, f64::INFINITY, 2.0, 1.25],
+            ..card.clone()
+        };
+        for card in [CardFile { areal_mass: None, bending: None, ..card.clone() }, card, whole, stiffens] {
             let read = CardFile::of(&TextFile::new(&card.to_toml(), "card.toml")).unwrap();
             assert_eq!(read, card);
         }
@@ -253,10 +309,19 @@ mod tests {
         let card = CardFile {
             title: String::new(),
             areal_mass: None,
-            membrane: MembraneStiffness { xx: 1.0, xy: 0.0, yy: 1.0, ss: 1.0, n1: 0.0, n2: 0.0 },
-            membrane_within: [1.0; 6],
+            membrane: MembraneStiffness {
+                xx: 1.0,
+                xy: 0.0,
+                yy: 1.0,
+                ss: 1.0,
+                n1: 0.0,
+                n2: 0.0,
+                ..MembraneStiffness::NONE
+            },
+            membrane_within: [1.0; MembraneStiffness::COUNT],
             bending: None,
             yarn: None,
+            open: Vec::new(),
         };
         let refused = |from: &str, to: &str| {
             let text = card.to_toml().replacen(from, to, 1);
@@ -264,6 +329,7 @@ mod tests {
         };
         assert!(refused("schema = 1", "schema = 2").contains("card.toml:1:10: schema 2 is not known"));
         assert!(refused("k_xx = \"1.0 N/m\"", "k_xx = \"-1.0 N/m\"").contains("must be positive"));
+        assert!(refused("within = [1.0, ", "within = [").contains("5 factors for 6 stiffnesses"));
         assert!(refused("k_yy = \"1.0 N/m\"\n", "").contains("`k_yy` is missing"));
     }
 }

@@ -88,13 +88,14 @@ fn a_whole_file_is_read() {
 fn rigidities_that_instruments_print_are_read() {
     let folder = folder();
     let printed = "[[rigidity]]\ndirection = \"warp\"\nvalue = \"0.1 gf cm^2/cm\"\n[[rigidity]]\ndirection = \"weft\"\nvalue = \"5 uN m\"\n";
-    fs::write(folder.path().join("fabric.toml"), format!("{WHOLE}{printed}")).unwrap();
+    let without_loops = WHOLE.split("[[bending]]").next().unwrap();
+    fs::write(folder.path().join("fabric.toml"), format!("{without_loops}{printed}")).unwrap();
     let fabric = read(folder.path()).unwrap();
     let values: Vec<f64> = fabric.rigidity.iter().map(|test| test.value).collect();
     assert!((values[0] - 5e-6).abs() < 1e-18 && (values[1] - 9.806_65e-6).abs() < 1e-12, "{values:?}");
     let gaps = fabric.gaps();
     assert!(gaps.iter().all(|gap| !gap.contains("bending test along the w")), "{gaps:?}");
-    fs::write(folder.path().join("fabric.toml"), format!("{WHOLE}{}", printed.replace("uN m", "N"))).unwrap();
+    fs::write(folder.path().join("fabric.toml"), format!("{without_loops}{}", printed.replace("uN m", "N"))).unwrap();
     assert!(read(folder.path()).unwrap_err().contains("uN m"));
 }
 

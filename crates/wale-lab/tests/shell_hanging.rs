@@ -10,7 +10,8 @@ const AREAL_MASS: f64 = 0.2;
 const GRAVITY: f64 = 9.81;
 
 fn card() -> ShellCard {
-    let membrane = MembraneStiffness { xx: 200.0, xy: 20.0, yy: 150.0, ss: 30.0, n1: 2.0, n2: 4.0 };
+    let membrane =
+        MembraneStiffness { xx: 200.0, xy: 20.0, yy: 150.0, ss: 30.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
     ShellCard { membrane, bending: BendingStiffness { weft: 4e-6, bias: 3e-6, warp: 2e-6 }, areal_mass: AREAL_MASS }
 }
 

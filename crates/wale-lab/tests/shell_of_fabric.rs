@@ -5,7 +5,7 @@ use std::fs;
 
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::fabric_file::FabricFile;
-use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::membrane_fit::{MembraneFitSettings, MembraneLaw};
 use wale_lab::shell::of_fabric::{ShellFit, fit_shell};
 use wale_lab::shell::uniform::uniform_stretch;
 use wale_lab::shell::{ClampedStretch, PearLoop, ShellCard};
@@ -13,7 +13,8 @@ use wale_lab::yarn_fit::of_fabric::uniform_targets;
 
 #[test]
 fn specimens_of_different_size_are_fitted_as_what_they_are() {
-    let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 600.0, ss: 60.0, n1: 2.0, n2: 4.0 };
+    let membrane =
+        MembraneStiffness { xx: 300.0, xy: 20.0, yy: 600.0, ss: 60.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
     let bending = BendingStiffness { weft: 1.5e-6, bias: 2.5e-6, warp: 5e-6 };
     let card = ShellCard { membrane, bending, areal_mass: 0.2 };
     let folder = tempfile::tempdir().unwrap();
@@ -76,4 +77,48 @@ fn targets_of_a_shell_are_its_uniform_curves(fabric: &FabricFile, found: &ShellF
         }
     }
     assert!(clamped_off > 0.03, "clamps make a difference here: {clamped_off}");
+}
+
+#[test]
+fn uniform_curves_and_a_rigidity_of_an_instrument_make_a_card() {
+    let stiff = MembraneStiffness { xx: 60.0, xy: 5.0, yy: 90.0, ss: 9.0, n1: 0.1, n2: 0.1, ..MembraneStiffness::NONE };
+    let membrane = MembraneStiffness { stiffening_xx: 300.0, stiffening_yy: 900.0, stiffening_ss: 60.0, ..stiff };
+    let folder = tempfile::tempdir().unwrap();
+    let mut fabric = String::from("schema = 1\nareal_mass = \"200 g/m^2\"\nassumed = [\"the mass\"]\n");
+    for degrees in [0.0, 45.0, 90.0] {
+        let mut table = String::from("stretch,force (N),compression\n0,0,0\n");
+        for k in 1..=12 {
+            let point = uniform_stretch(&membrane, f64::to_radians(degrees), 0.025 * f64::from(k)).unwrap().point;
+            // Of a strip 5 cm wide.
+            let _ = writeln!(table, "{},{},{}", point.stretch, 0.05 * point.force, point.compression);
+        }
+        let name = format!("{degrees}.csv");
+        fs::write(folder.path().join(&name), table).unwrap();
+        let _ = write!(
+            fabric,
+            "[[stretch]]\ndirection = \"{degrees} deg\"\nfile = \"{name}\"\nwidth = \"5 cm\"\nuniform = true\n"
+        );
+    }
+    for (direction, value) in [("weft", 4), ("bias", 3), ("warp", 2)] {
+        let _ = write!(fabric, "[[rigidity]]\ndirection = \"{direction}\"\nvalue = \"{value} uN m\"\n");
+    }
+    let path = folder.path().join("fabric.toml");
+    fs::write(&path, &fabric).unwrap();
+    let file = FabricFile::read(&path).unwrap();
+    let settings = MembraneFitSettings { law: MembraneLaw::Stiffening, ..MembraneFitSettings::default() };
+    let found = fit_shell(&file, &settings).unwrap();
+    assert!(found.membrane.force_error < 5e-3 && found.membrane.compression_error < 0.02, "{:?}", found.membrane);
+    assert!((found.membrane.stiffness.stiffening_yy / 900.0 - 1.0).abs() < 0.3, "{:?}", found.membrane.stiffness);
+    // B = 2k_θ.
+    assert_eq!(found.card.bending, Some(BendingStiffness { weft: 2e-6, bias: 1.5e-6, warp: 1e-6 }));
+    assert!(found.card.open.contains(&"assumed: the mass".to_owned()), "{:?}", found.card.open);
+    for target in uniform_targets(&file, &found).unwrap() {
+        for [stretch, force, _] in target.points {
+            let known = uniform_stretch(&membrane, target.angle, stretch).unwrap().point.force;
+            assert!((force / known - 1.0).abs() < 0.02, "{stretch}: {force} {known}");
+        }
+    }
+    let looped = fabric.clone() + "[[bending]]\ndirection = \"weft\"\nfile = \"0.csv\"\n";
+    fs::write(&path, looped).unwrap();
+    assert!(FabricFile::read(&path).unwrap_err().to_string().contains("given twice"));
 }

@@ -21,6 +21,9 @@ pub struct Fit {
     /// Fit the thin shell alone, though the fabric file says how the yarns lie
     #[arg(long)]
     pub shell_only: bool,
+    /// Law of the thin shell's stress
+    #[arg(long, value_enum, default_value_t = Law::Quadratic)]
+    pub law: Law,
     /// How the yarn is fitted
     #[arg(long, value_enum, default_value_t = Way::Gradients)]
     pub way: Way,
@@ -56,6 +59,15 @@ pub struct Elsewhere {
     /// Take answers, JSON lines of a file or of standard input (`-`)
     #[arg(long, value_name = "FILE")]
     pub tell: Option<PathBuf>,
+}
+
+/// Laws of a thin shell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Law {
+    /// St. Venant–Kirchhoff's with terms of area: the paper's
+    Quadratic,
+    /// With four numbers more, for a fabric that becomes stiffer as it is stretched
+    Stiffening,
 }
 
 /// Ways to fit a yarn.

@@ -7,9 +7,9 @@ use clap::{Args, ValueEnum};
 /// `wale render`
 #[derive(Debug, Args)]
 pub struct Render {
-    /// Run folder
+    /// Run folder, or a periodic tile of yarns (`.pyp`)
     pub run: PathBuf,
-    /// PNG file, or folder for several frames; inside the run folder if not given
+    /// PNG file, or folder for several frames; inside the run folder, or beside the tile, if not given
     #[arg(long, short, value_name = "PATH")]
     pub out: Option<PathBuf>,
     /// Frames to draw: `last`, `all`, a number, or a range such as `10..20`

@@ -16,6 +16,7 @@ pub mod render;
 pub mod resume;
 pub mod run;
 pub mod schema;
+pub mod tile_picture;
 pub mod topology;
 pub mod version;
 pub mod view;

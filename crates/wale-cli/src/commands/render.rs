@@ -1,4 +1,4 @@
-//! `wale render`: frames of a run as PNG pictures.
+//! `wale render`: frames of a run, or a periodic tile, as PNG pictures.
 
 use std::io;
 use std::path::PathBuf;
@@ -9,16 +9,20 @@ use wale::picture::{
 };
 use wale::record::atomic_file::write_atomically;
 
+use super::tile_picture::draw_tile;
 use crate::arguments::Render;
 use crate::exit::{Code, Failure};
 use crate::opened::OpenedRun;
 use crate::say;
 
 /// Free space around the fabric, as a share of the picture's height.
-const MARGIN: f64 = 0.085;
+pub const MARGIN: f64 = 0.085;
 
 /// Draws them.
 pub fn render(arguments: &Render) -> Result<(), Failure> {
+    if arguments.run.extension().is_some_and(|extension| extension == "pyp") {
+        return say!("{}", draw_tile(arguments)?.display());
+    }
     for path in draw_frames(arguments)? {
         say!("{}", path.display())?;
     }

@@ -43,6 +43,8 @@ pub struct FabricFile {
     pub title: String,
     /// Mass per area \[kg/m²\], if known.
     pub areal_mass: Option<f64>,
+    /// What of all this was not measured of this fabric, in words.
+    pub assumed: Vec<String>,
     /// What it is made of.
     pub yarns: Vec<Yarn>,
     /// How its yarns lie, if known.
@@ -90,8 +92,10 @@ pub enum Structure {
 pub struct StretchTest {
     /// Angle of the pull from the weft \[rad\].
     pub direction: f64,
-    /// What was clamped.
+    /// What was clamped; of uniform stretch, a metre of width.
     pub specimen: Specimen,
+    /// Whether it was stretched uniformly, without stress across, and not between clamps.
+    pub uniform: bool,
     /// What was measured.
     pub curve: StretchCurve,
 }

@@ -39,14 +39,28 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
     let mut stretch = Vec::new();
     for (index, test) in text.stretch.iter().enumerate() {
         let read = Reading::of(test, &format!("stretch.{index}"), file, &mut inputs)?;
-        let curve = StretchCurve::of(&read.table, &read.request, read.specimen)?;
-        stretch.push(StretchTest { direction: read.direction, specimen: read.specimen, curve });
+        let mut curve = StretchCurve::of(&read.table, &read.request, read.specimen)?;
+        let mut specimen = read.specimen;
+        if test.uniform {
+            // Force goes with width.
+            curve.force.iter_mut().for_each(|force| *force /= specimen.width);
+            specimen.width = 1.0;
+        }
+        stretch.push(StretchTest { direction: read.direction, specimen, uniform: test.uniform, curve });
     }
     let mut bending = Vec::new();
     for (index, test) in text.bending.iter().enumerate() {
         let read = Reading::of(test, &format!("bending.{index}"), file, &mut inputs)?;
+        if test.uniform {
+            let what = "a loop is clamped".to_owned();
+            return Err(file.error(&format!("bending.{index}.uniform"), what, "leave it out").into());
+        }
         let curve = LoopCurve::of(&read.table, &read.request)?;
         bending.push(LoopTest { direction: read.direction, specimen: read.specimen, curve });
+    }
+    if !text.rigidity.is_empty() && !text.bending.is_empty() {
+        let what = "bending is given twice, by loops and by rigidities".to_owned();
+        return Err(file.error("rigidity.0", what, "leave one of them out").into());
     }
     let mut rigidity = Vec::new();
     for (index, test) in text.rigidity.iter().enumerate() {
@@ -59,6 +73,7 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
     Ok(FabricFile {
         title: text.title.unwrap_or_default(),
         areal_mass: text.areal_mass.map(Quantity::si),
+        assumed: text.assumed,
         yarns,
         structure,
         spacing: spacing.map(|spacing| spacing.map(Quantity::si)),

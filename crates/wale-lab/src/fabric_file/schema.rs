@@ -31,6 +31,9 @@ pub struct FabricText {
     pub title: Option<String>,
     /// Mass of the fabric.
     pub areal_mass: Option<Quantity<ArealMass, Positive>>,
+    /// Numbers of this file that were not measured of this fabric, each with where it is from.
+    #[serde(default)]
+    pub assumed: Vec<String>,
     /// What it is made of.
     #[serde(default)]
     pub yarn: Vec<YarnText>,
@@ -101,6 +104,10 @@ pub struct TestText {
     pub length: Option<Quantity<Length, Positive>>,
     /// Its width; 60 mm if left out.
     pub width: Option<Quantity<Length, Positive>>,
+    /// Whether the table is of uniform stretch without stress across, and not of a swatch between clamps: values of a published model,
+    /// or of a strain field that a camera saw. Only for stretch.
+    #[serde(default)]
+    pub uniform: bool,
     /// Which column is what, by its head or its number from 1, where the heads do not tell: `{ force = "Load", stretch = 3 }`.
     #[serde(default)]
     pub columns: BTreeMap<Meaning, ColumnName>,

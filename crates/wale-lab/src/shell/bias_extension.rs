@@ -46,7 +46,8 @@ mod tests {
     #[test]
     fn a_cloth_of_stiff_yarns_tells_its_shear_stiffness() {
         // Without an area term a light load along the bias of inextensible yarns meets k_ss alone.
-        let cloth = MembraneStiffness { xx: 1e5, xy: 0.0, yy: 1e5, ss: 26.0, n1: 0.0, n2: 0.0 };
+        let cloth =
+            MembraneStiffness { xx: 1e5, xy: 0.0, yy: 1e5, ss: 26.0, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         let light = bias_extension(&cloth, 0.01).unwrap();
         assert!((light.shear_rigidity / 26.0 - 1.0).abs() < 2e-3, "{light:?}");
         // The laboratories' formula, with the stretch in per cent.

@@ -187,7 +187,8 @@ mod tests {
 
     #[test]
     fn a_strip_reaches_as_far_as_a_heavy_elastica() {
-        let membrane = MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         let stiffness = 3e-6;
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(stiffness), areal_mass: 0.2 };
         let report = Cantilever::default().run(&card).unwrap();
@@ -204,7 +205,8 @@ mod tests {
 
     #[test]
     fn impossible_strips_are_errors() {
-        let membrane = MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(3e-6), areal_mass: 0.2 };
         assert!(Cantilever::default().run(&ShellCard { areal_mass: 0.0, ..card }).is_err());
         assert!(Cantilever::default().run(&ShellCard { bending: BendingStiffness::isotropic(0.0), ..card }).is_err());

@@ -28,6 +28,10 @@ impl ShellCard {
         positive("k_ss", m.ss)?;
         not_negative("k_n1", m.n1)?;
         not_negative("k_n2", m.n2)?;
+        not_negative("m_xx", m.stiffening_xx)?;
+        not_negative("m_yy", m.stiffening_yy)?;
+        not_negative("m_ss", m.stiffening_ss)?;
+        positive("1 − |m_xy|", 1.0 - m.stiffening_xy.abs())?;
         let area = 2.0 * (m.n1 + m.n2);
         let most = ((m.xx + area) * (m.yy + area)).sqrt();
         let coupled = (m.xy + area).abs();
@@ -48,7 +52,8 @@ mod tests {
 
     #[test]
     fn a_card_that_is_not_stable_is_refused() {
-        let membrane = MembraneStiffness { xx: 30.0, xy: 5.0, yy: 80.0, ss: 6.0, n1: 1.0, n2: 2.0 };
+        let membrane =
+            MembraneStiffness { xx: 30.0, xy: 5.0, yy: 80.0, ss: 6.0, n1: 1.0, n2: 2.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(2e-6), areal_mass: 0.2 };
         assert_eq!(card.check(), Ok(()));
         let with = |membrane| ShellCard { membrane, ..card }.check();
@@ -56,6 +61,9 @@ mod tests {
         assert!(with(MembraneStiffness { ss: f64::NAN, ..membrane }).is_err());
         assert!(with(MembraneStiffness { xy: 60.0, ..membrane }).is_err());
         assert!(with(MembraneStiffness { n2: -1.0, ..membrane }).is_err());
+        assert!(with(MembraneStiffness { stiffening_xy: 0.5, stiffening_xx: 9.0, ..membrane }).is_ok());
+        assert!(with(MembraneStiffness { stiffening_xy: 1.0, ..membrane }).is_err());
+        assert!(with(MembraneStiffness { stiffening_ss: -1.0, ..membrane }).is_err());
         assert!(ShellCard { areal_mass: -0.1, ..card }.check().unwrap_err().to_string().contains("areal mass"));
         assert!(ShellCard { bending: BendingStiffness::isotropic(-1.0), ..card }.check().is_err());
     }

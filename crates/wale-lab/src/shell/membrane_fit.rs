@@ -1,4 +1,6 @@
-//! The six in-plane stiffnesses whose stretch tests come out as measured [Sperl2022, Eq. 2].
+//! The in-plane stiffnesses whose stretch tests come out as measured [Sperl2022, Eq. 2].
+
+use std::convert::Infallible;
 
 use rayon::prelude::*;
 use wale::energy::{BendingStiffness, MembraneStiffness};
@@ -7,9 +9,10 @@ use super::card::ShellCard;
 use super::clamped_stretch::ClampedStretch;
 use super::error::ShellError;
 
+pub use super::membrane_law::MembraneLaw;
 use super::stretch_curve::{StretchCurve, StretchPoint};
 use super::uniform::uniform_stretch;
-use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit_positive};
+use crate::least_squares::{LeastSquaresFit, LeastSquaresSettings, Residuals, fit};
 
 /// How a curve was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +45,8 @@ impl MeasuredStretch {
 /// How a fit is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneFitSettings {
+    /// The law that is fitted.
+    pub law: MembraneLaw,
     /// Targets along each measured curve.
     pub targets: usize,
     /// Starts, at most [`MembraneFitSettings::MOST_STARTS`].
@@ -61,14 +66,15 @@ impl MembraneFitSettings {
 
 impl Default for MembraneFitSettings {
     fn default() -> Self {
-        Self { targets: 6, starts: STARTS.len(), begin: None, max_evaluations: 120, least_noise: 0.01 }
+        let law = MembraneLaw::Quadratic;
+        Self { law, targets: 6, starts: STARTS.len(), begin: None, max_evaluations: 120, least_noise: 0.01 }
     }
 }
 
 /// A fabric that was fitted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MembraneFit {
-    /// The six stiffnesses \[N/m\].
+    /// The stiffnesses \[N/m\].
     pub stiffness: MembraneStiffness,
     /// Mean error of the force at the targets over their mean measured force \[–\].
     pub force_error: f64,
@@ -76,7 +82,7 @@ pub struct MembraneFit {
     pub compression_error: f64,
     /// The targets, curve by curve, and what the fitted fabric does there.
     pub points: Vec<Vec<[StretchPoint; 2]>>,
-    /// How well each stiffness is known, in the order of [`MembraneStiffness::NAMES`].
+    /// Its numbers, and how well each is known, in the order of [`MembraneStiffness::NAMES`].
     pub least_squares: LeastSquaresFit<{ MembraneStiffness::COUNT }>,
 }
 
@@ -90,7 +96,7 @@ impl MembraneFit {
 
 /// Starts, as parts of the moduli along weft and warp (`xx`, `yy`), of their geometric mean (`xy`, `n1`, `n2`) and of the
 /// modulus along the bias (`ss`).
-const STARTS: [[f64; MembraneStiffness::COUNT]; 6] = [
+const STARTS: [[f64; MembraneStiffness::QUADRATIC]; 6] = [
     [0.8, 0.10, 0.8, 0.30, 0.03, 0.03],
     [0.8, 0.30, 0.8, 0.30, 0.001, 0.10],
     [0.5, 0.01, 0.5, 0.10, 0.10, 0.001],
@@ -98,8 +104,15 @@ const STARTS: [[f64; MembraneStiffness::COUNT]; 6] = [
     [0.5, 0.20, 0.5, 0.05, 0.01, 0.30],
     [0.3, 0.05, 0.3, 0.30, 0.30, 0.10],
 ];
-/// Bounds, as parts of the geometric mean of the moduli.
-const BOUNDS: [f64; 2] = [1e-6, 1e3];
+/// Starts of the stiffening, as parts of the moduli of each direction, and its coupling.
+const STIFFENING: [[f64; MembraneStiffness::COUNT - MembraneStiffness::QUADRATIC]; STARTS.len()] = [
+    [3.0, 3.0, 3.0, 0.3],
+    [10.0, 10.0, 10.0, 0.6],
+    [1.0, 1.0, 1.0, 0.1],
+    [2.0, 2.0, 2.0, 0.8],
+    [10.0, 10.0, 3.0, 0.1],
+    [3.0, 10.0, 1.0, 0.5],
+];
 /// How much a stiffness would rather stay where it is guessed, over what a target weighs: too little to move what the tests tell, and
 /// enough that what they do not tell ends as a fabric and not at a bound.
 const GUESS: f64 = 1e-3;
@@ -113,10 +126,10 @@ struct Answer {
     compression_slope: [f64; MembraneStiffness::COUNT],
 }
 
-/// Fits the six stiffnesses to measured curves, of whichever directions there are.
+/// Fits the stiffnesses to measured curves, of whichever directions there are.
 ///
 /// Minimises `Σ ((f − f_i)/f̄)² + ((c − c_i)/c̄)²` over targets that lie evenly along each curve, with the mean measured force
-/// `f̄` and compression `c̄` as weights [Sperl2022, Eq. 2], by Levenberg–Marquardt in the logarithms with exact derivatives
+/// `f̄` and compression `c̄` as weights [Sperl2022, Eq. 2], by Levenberg–Marquardt in the logarithms of the stiffnesses with exact derivatives
 /// through equilibrium. Coordinates that only a missing direction would tell are reported, not guessed: see
 /// [`MembraneFit::undetermined`].
 ///
@@ -139,38 +152,51 @@ pub fn fit_membrane(measured: &[MeasuredStretch], settings: &MembraneFitSettings
     let weigh_compression = if mean_compression > LEAST_COMPRESSION { 1.0 / mean_compression } else { 0.0 };
 
     let answers = |parameters: &[f64; MembraneStiffness::COUNT]| -> Option<Vec<Vec<Answer>>> {
-        let stiffness = MembraneStiffness::from_array(*parameters);
+        let stiffness = settings.law.stiffness(parameters);
         let one = |k: usize| answer(&measured[k].test, &stiffness, measured[k].curve.angle, &targets[k]);
         (0..measured.len()).into_par_iter().map(one).collect()
     };
-    let (mut starts, unit) = starts(measured, &targets, settings.starts);
-    let guess = starts[0];
+    let law = settings.law;
+    let (starts, unit) = starts(measured, &targets, settings.starts);
+    let guess = law.coordinates(&starts[0]);
+    let mut places: Vec<_> = starts.iter().map(|start| law.coordinates(start)).collect();
     if let Some(begin) = settings.begin {
-        starts = vec![begin.to_array()];
+        // What the paper's law does not use stays where it is held.
+        let begin = begin.to_array();
+        places = vec![law.coordinates(&std::array::from_fn(|k| if begin[k] == 0.0 { starts[0][k] } else { begin[k] }))];
     }
-    let evaluate = |parameters: &[f64; MembraneStiffness::COUNT]| {
+    let evaluate = |place: &[f64; MembraneStiffness::COUNT]| {
         let mut out = Residuals::default();
         for k in 0..MembraneStiffness::COUNT {
             let slopes = std::array::from_fn(|j| if j == k { GUESS } else { 0.0 });
-            out.push(GUESS * (parameters[k] / guess[k]).ln(), slopes);
+            out.push(GUESS * (place[k] - guess[k]), slopes);
         }
-        for ((target, compression), answer) in all().zip(answers(parameters)?.iter().flatten()) {
-            let by_log = |slope: &[f64; 6], weight: f64| std::array::from_fn(|k| weight * slope[k] * parameters[k]);
+        let numbers = law.numbers(place);
+        for ((target, compression), answer) in all().zip(answers(&numbers)?.iter().flatten()) {
+            let slopes = |slope: &[f64; MembraneStiffness::COUNT], weight: f64| {
+                law.by_coordinates(&numbers, slope).map(|slope| weight * slope)
+            };
             let force = (answer.point.force - target.force) / mean_force;
-            out.push(force, by_log(&answer.force_slope, 1.0 / mean_force));
+            out.push(force, slopes(&answer.force_slope, 1.0 / mean_force));
             if compression && weigh_compression > 0.0 {
                 let compression = (answer.point.compression - target.compression) * weigh_compression;
-                out.push(compression, by_log(&answer.compression_slope, weigh_compression));
+                out.push(compression, slopes(&answer.compression_slope, weigh_compression));
             }
         }
         Some(out)
     };
 
-    let bounds = [BOUNDS.map(|part| part * unit); MembraneStiffness::COUNT];
+    let bounds = law.bounds(unit, &guess);
     let search =
         LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
     let failed = || ShellError::Fit("no start led to a fabric whose tests could be done".into());
-    let least_squares = fit_positive(evaluate, &starts, &search).ok_or_else(failed)?;
+    let least_squares = match fit(|place: &_, _| Ok::<_, Infallible>(evaluate(place)), &places, &search) {
+        Ok(found) => found.ok_or_else(failed)?,
+        Err(never) => match never {},
+    };
+    let parameters = law.numbers(&least_squares.parameters);
+    let uncertainty = law.factors(&least_squares.parameters, &least_squares.uncertainty);
+    let least_squares = LeastSquaresFit { parameters, uncertainty, ..least_squares };
     let found = answers(&least_squares.parameters).ok_or_else(failed)?;
     let points: Vec<Vec<[StretchPoint; 2]>> = targets
         .iter()
@@ -184,7 +210,7 @@ pub fn fit_membrane(measured: &[MeasuredStretch], settings: &MembraneFitSettings
         .map(|(target, found, _)| (found.compression - target.compression).abs())
         .sum();
     Ok(MembraneFit {
-        stiffness: MembraneStiffness::from_array(least_squares.parameters),
+        stiffness: law.stiffness(&least_squares.parameters),
         force_error: force_off / count as f64 / mean_force,
         compression_error: compression_off / wide.max(1) as f64 * weigh_compression,
         points,
@@ -243,8 +269,12 @@ fn starts(
     let right = std::f64::consts::FRAC_PI_2;
     let (weft, bias, warp) = (modulus(0.0), modulus(0.5 * right), modulus(right));
     let mean = (weft * warp).sqrt();
-    let units = [weft, mean, warp, bias, mean, mean];
-    let starts = STARTS.iter().take(count.max(1)).map(|parts| std::array::from_fn(|k| parts[k] * units[k])).collect();
+    let units = [weft, mean, warp, bias, mean, mean, weft, warp, bias, 1.0];
+    let start = |(quadratic, stiffening): (&[f64; 6], &[f64; 4])| {
+        let mut parts = quadratic.iter().chain(stiffening);
+        units.map(|unit| unit * parts.next().copied().unwrap_or(1.0))
+    };
+    let starts = STARTS.iter().zip(&STIFFENING).take(count.max(1)).map(start).collect();
     (starts, mean)
 }
 
@@ -254,7 +284,8 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-    const TRUTH: MembraneStiffness = MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0 };
+    const TRUTH: MembraneStiffness =
+        MembraneStiffness { xx: 25.0, xy: 4.0, yy: 80.0, ss: 7.0, n1: 1.5, n2: 3.0, ..MembraneStiffness::NONE };
 
     fn uniform(angle: f64, largest: f64) -> MeasuredStretch {
         MeasuredStretch::new(uniform_curve(&TRUTH, angle, largest, 60).unwrap(), StretchTest::Uniform)
@@ -280,6 +311,27 @@ mod tests {
         let fit = fit_membrane(&curves, &MembraneFitSettings::default()).unwrap();
         assert!(fit.force_error < 1e-3 && fit.compression_error < 1e-3, "{fit:?}");
         assert!((fit.stiffness.yy / TRUTH.yy - 1.0).abs() < 0.05, "{:?}", fit.stiffness);
+    }
+
+    #[test]
+    fn a_fabric_that_stiffens_is_recovered() {
+        let truth = MembraneStiffness {
+            xy: -4.0,
+            stiffening_xx: 60.0,
+            stiffening_yy: 400.0,
+            stiffening_ss: 9.0,
+            stiffening_xy: 0.5,
+            ..TRUTH
+        };
+        let curves: Vec<_> = [(0.0, 0.5), (FRAC_PI_4, 0.4), (FRAC_PI_2, 0.3)]
+            .map(|(a, s)| MeasuredStretch::new(uniform_curve(&truth, a, s, 60).unwrap(), StretchTest::Uniform))
+            .into();
+        let fitted =
+            |law| fit_membrane(&curves, &MembraneFitSettings { law, ..MembraneFitSettings::default() }).unwrap();
+        let (stiffening, quadratic) = (fitted(MembraneLaw::Stiffening), fitted(MembraneLaw::Quadratic));
+        assert!(stiffening.force_error < 2e-3 && stiffening.compression_error < 1e-2, "{stiffening:?}");
+        assert!((stiffening.stiffness.stiffening_yy / 400.0 - 1.0).abs() < 0.2, "{:?}", stiffening.stiffness);
+        assert!(quadratic.force_error > 0.02 && !quadratic.stiffness.stiffens(), "{quadratic:?}");
     }
 
     #[test]

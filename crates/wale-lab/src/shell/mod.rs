@@ -11,6 +11,7 @@ pub mod card;
 pub mod clamped_stretch;
 pub mod error;
 pub mod membrane_fit;
+mod membrane_law;
 pub mod mesh;
 pub mod of_fabric;
 pub mod pear_loop;

@@ -16,7 +16,7 @@ const EDGE: f64 = 0.1;
 /// What was fitted.
 #[derive(Clone, Debug)]
 pub struct ShellFit {
-    /// In-plane stiffnesses, by clamped stretch tests of the specimens' sizes.
+    /// In-plane stiffnesses, by stretch tests as they were made: between clamps, at the specimens' sizes, or uniform.
     pub membrane: MembraneFit,
     /// Bending stiffnesses, if loops were measured and the mass is known.
     pub bending: Option<BendingFit>,
@@ -54,7 +54,8 @@ fn printed(rigidity: &[Rigidity], open: &mut Vec<String>) -> Option<BendingStiff
         (weft * warp).sqrt()
     };
     let bias = along(45.0).map_or_else(mean, |test| test.value);
-    Some(BendingStiffness { weft, bias, warp })
+    // B = 2k_θ.
+    Some(BendingStiffness::from_array([weft, bias, warp].map(|rigidity| 0.5 * rigidity)))
 }
 
 /// Fits a thin shell to the tests of a fabric.
@@ -66,6 +67,7 @@ pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<
         return Err(ShellFitError::NoStretchTest);
     }
     let mut open = fabric.gaps();
+    open.extend(fabric.assumed.iter().map(|what| format!("assumed: {what}")));
     let measured: Vec<MeasuredStretch> = fabric
         .stretch
         .iter()
@@ -88,7 +90,7 @@ pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<
             };
             MeasuredStretch {
                 curve: StretchCurve { angle: test.direction, points },
-                test: StretchTest::Clamped(clamped),
+                test: if test.uniform { StretchTest::Uniform } else { StretchTest::Clamped(clamped) },
                 compression: test.curve.compression.is_some(),
             }
         })
@@ -134,6 +136,7 @@ pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<
         membrane_within: membrane.least_squares.uncertainty,
         bending: bending.as_ref().map(|fit| fit.stiffness).or_else(|| printed(&fabric.rigidity, &mut open)),
         yarn: None,
+        open: open.clone(),
     };
     Ok(ShellFit { membrane, bending, card, open })
 }
@@ -148,8 +151,9 @@ mod tests {
         let mut open = Vec::new();
         assert_eq!(printed(&[test(0.0, 1e-6)], &mut open), None);
         let found = printed(&[test(0.0, 1e-6), test(90.0, 4e-6)], &mut open).unwrap();
-        assert!((found.bias - 2e-6).abs() < 1e-18 && open.len() == 1);
+        assert!((found.bias - 1e-6).abs() < 1e-18 && open.len() == 1);
+        assert_eq!((found.weft, found.warp), (0.5e-6, 2e-6), "B is twice the stiffness");
         let found = printed(&[test(0.0, 1e-6), test(45.0, 3e-6), test(90.0, 4e-6)], &mut open).unwrap();
-        assert!(found.bias == 3e-6 && open.len() == 1);
+        assert!(found.bias == 1.5e-6 && open.len() == 1);
     }
 }

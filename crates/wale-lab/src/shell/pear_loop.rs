@@ -194,7 +194,8 @@ mod tests {
     use wale::energy::MembraneStiffness;
 
     fn card(bending: BendingStiffness) -> ShellCard {
-        let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 300.0, ss: 60.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 300.0, xy: 20.0, yy: 300.0, ss: 60.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         ShellCard { membrane, bending, areal_mass: 0.2 }
     }
 

@@ -269,10 +269,8 @@ impl ShellSystem {
         let mut out = [0.0; MembraneStiffness::COUNT];
         for (index, element) in self.membranes.elements.iter().enumerate() {
             let (place, along) = (self.membranes.local(index, q), self.membranes.local(index, direction));
-            for (k, sum) in out.iter_mut().enumerate() {
-                let unit = Membrane { stiffness: MembraneStiffness::unit(k), ..*element };
-                *sum += dot(&unit.gradient(&place).1, &along);
-            }
+            let slopes = element.gradient_slopes(&place, &along);
+            out.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum += slope);
         }
         out
     }

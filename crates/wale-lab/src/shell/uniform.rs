@@ -6,7 +6,7 @@ use wale_numerics::jet::{Jet, Real};
 use super::error::{ShellError, positive};
 use super::stretch_curve::{StretchCurve, StretchPoint};
 
-/// A point of a uniform stretch with its derivatives by the six stiffnesses.
+/// A point of a uniform stretch with its derivatives by the stiffnesses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformPoint {
     /// Stretch, stress (force a width at rest \[N/m\]) and compression.
@@ -20,11 +20,17 @@ pub struct UniformPoint {
 /// Energy density \[J/m²\] of `F = U diag(1 + s, w) Uᵀ`: `along = 1 + s` in the direction `angle` \[rad\] from the weft, and the
 /// width `w = 1 − c` across it.
 pub fn density<T: Real>(stiffness: &MembraneStiffness, angle: f64, along: T, width: T) -> T {
+    let (metric, area_ratio) = metric(angle, along, width);
+    stiffness.density(metric, area_ratio)
+}
+
+/// Its metric `[f₁·f₁, f₂·f₂, f₁·f₂]` and area ratio.
+fn metric<T: Real>(angle: f64, along: T, width: T) -> ([T; 3], T) {
     let (sin, cos) = angle.sin_cos();
     let f11 = along.scale(cos * cos) + width.scale(sin * sin);
     let f22 = along.scale(sin * sin) + width.scale(cos * cos);
     let f12 = (along - width).scale(sin * cos);
-    stiffness.density([f11.square() + f12.square(), f22.square() + f12.square(), f12 * (f11 + f22)], along * width)
+    ([f11.square() + f12.square(), f22.square() + f12.square(), f12 * (f11 + f22)], along * width)
 }
 
 /// Widths among which the one of least energy is looked for first.
@@ -67,7 +73,7 @@ pub fn width_without_stress(stiffness: &MembraneStiffness, angle: f64, stretch: 
 }
 
 /// Stress and compression of a strip stretched by `stretch` \[–\] along `angle` \[rad\] from the weft, with their derivatives
-/// by the six stiffnesses, through the condition of no stress across.
+/// by the stiffnesses, through the condition of no stress across.
 ///
 /// # Errors
 /// As [`width_without_stress`].
@@ -76,9 +82,10 @@ pub fn uniform_stretch(stiffness: &MembraneStiffness, angle: f64, stretch: f64) 
     let [along, across] = Jet::<2>::variables(&[1.0 + stretch, width]);
     let whole = density(stiffness, angle, along, across);
     let [_, [mixed, second]] = whole.hessian();
-    let (mut force_slope, mut compression_slope) = ([0.0; 6], [0.0; 6]);
-    for k in 0..MembraneStiffness::COUNT {
-        let part = density(&MembraneStiffness::unit(k), angle, along, across).gradient;
+    let (mut force_slope, mut compression_slope) = ([0.0; MembraneStiffness::COUNT], [0.0; MembraneStiffness::COUNT]);
+    let (metric, area_ratio) = metric(angle, along, across);
+    for k in 0..stiffness.used() {
+        let part = stiffness.density_slope(k, metric, area_ratio).gradient;
         let width_slope = -part[1] / second;
         force_slope[k] = part[0] + mixed * width_slope;
         compression_slope[k] = -width_slope;
@@ -106,7 +113,8 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-    const STIFFNESS: MembraneStiffness = MembraneStiffness { xx: 40.0, xy: 9.0, yy: 110.0, ss: 6.0, n1: 3.0, n2: 5.0 };
+    const STIFFNESS: MembraneStiffness =
+        MembraneStiffness { xx: 40.0, xy: 9.0, yy: 110.0, ss: 6.0, n1: 3.0, n2: 5.0, ..MembraneStiffness::NONE };
 
     #[test]
     fn small_stretches_have_the_modulus_and_poisson_ratio() {
@@ -121,15 +129,22 @@ mod tests {
 
     #[test]
     fn nothing_is_across_and_slopes_are_those_of_differences() {
-        for angle in [0.0, 0.3, FRAC_PI_4, FRAC_PI_2] {
+        const STIFFENS: MembraneStiffness = MembraneStiffness {
+            stiffening_xx: 60.0,
+            stiffening_yy: 90.0,
+            stiffening_ss: 8.0,
+            stiffening_xy: 0.5,
+            ..STIFFNESS
+        };
+        for (angle, law) in [0.0, 0.3, FRAC_PI_4, FRAC_PI_2].into_iter().flat_map(|a| [(a, STIFFNESS), (a, STIFFENS)]) {
             for stretch in [-0.2, 0.05, 0.5, 1.6] {
-                let found = uniform_stretch(&STIFFNESS, angle, stretch).unwrap();
+                let found = uniform_stretch(&law, angle, stretch).unwrap();
                 let width = 1.0 - found.point.compression;
-                let jet = density(&STIFFNESS, angle, Jet::<1>::constant(1.0 + stretch), Jet::<1>::variable(width, 0));
+                let jet = density(&law, angle, Jet::<1>::constant(1.0 + stretch), Jet::<1>::variable(width, 0));
                 assert!(jet.gradient[0].abs() < 1e-11, "stress across: {}", jet.gradient[0]);
-                for k in 0..6 {
+                for k in 0..law.used() {
                     let moved = |by: f64| {
-                        let mut array = STIFFNESS.to_array();
+                        let mut array = law.to_array();
                         array[k] += by;
                         uniform_stretch(&MembraneStiffness::from_array(array), angle, stretch).unwrap().point
                     };
@@ -146,7 +161,8 @@ mod tests {
     #[test]
     fn without_the_area_terms_a_strip_collapses_and_says_so() {
         // A directional Poisson ratio of 2: at a stretch of 0.9 St. Venant–Kirchhoff alone has no width left.
-        let bare = MembraneStiffness { xx: 400.0, xy: 60.0, yy: 30.0, ss: 5.0, n1: 0.0, n2: 0.0 };
+        let bare =
+            MembraneStiffness { xx: 400.0, xy: 60.0, yy: 30.0, ss: 5.0, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         assert_eq!(uniform_stretch(&bare, 0.0, 0.9), Err(ShellError::Collapsed { stretch: 0.9 }));
         assert!(uniform_stretch(&MembraneStiffness { n2: 1.0, ..bare }, 0.0, 0.9).unwrap().point.compression < 1.0);
         assert!(uniform_stretch(&STIFFNESS, 0.0, -1.0).is_err());

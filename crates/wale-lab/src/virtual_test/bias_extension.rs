@@ -182,7 +182,8 @@ mod tests {
     #[test]
     fn stiff_yarns_shear_nearly_as_in_a_picture_frame() {
         let (stiff, k_ss) = (3e4, 20.0);
-        let membrane = MembraneStiffness { xx: stiff, xy: 0.0, yy: stiff, ss: k_ss, n1: 0.0, n2: 0.0 };
+        let membrane =
+            MembraneStiffness { xx: stiff, xy: 0.0, yy: stiff, ss: k_ss, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 };
         let test = BiasExtensionTest { largest: 30.0 * DEG, points: 12, ..BiasExtensionTest::default() };
         let found = test.run(&card).unwrap();

@@ -31,7 +31,8 @@ mod tests {
 
     #[test]
     fn the_strip_hangs_to_the_line_that_the_instrument_has() {
-        let membrane = MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 400.0, xy: 20.0, yy: 400.0, ss: 80.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(3e-6), areal_mass: 0.2 };
         let test = CantileverTest { rows: 24, ..CantileverTest::default() };
         let found = run(&test, &card).unwrap();

@@ -167,7 +167,8 @@ mod tests {
     use wale::energy::{BendingStiffness, MembraneStiffness};
 
     fn card(bending: f64) -> ShellCard {
-        let membrane = MembraneStiffness { xx: 500.0, xy: 50.0, yy: 500.0, ss: 50.0, n1: 1.0, n2: 2.0 };
+        let membrane =
+            MembraneStiffness { xx: 500.0, xy: 50.0, yy: 500.0, ss: 50.0, n1: 1.0, n2: 2.0, ..MembraneStiffness::NONE };
         ShellCard { membrane, bending: BendingStiffness::isotropic(bending), areal_mass: 0.2 }
     }
 

@@ -104,7 +104,8 @@ mod tests {
     #[test]
     fn a_known_cloth_has_the_numbers_that_are_worked_out_by_hand() {
         let (k, mass) = (1000.0, 0.168);
-        let membrane = MembraneStiffness { xx: k, xy: 0.0, yy: k, ss: 26.0, n1: 0.0, n2: 0.0 };
+        let membrane =
+            MembraneStiffness { xx: k, xy: 0.0, yy: k, ss: 26.0, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(2.7e-6), areal_mass: mass };
         // A coarse strip: what is tested is how its numbers are used.
         let cantilever = Cantilever { width: 0.02, rows: 14, ..Cantilever::default() };

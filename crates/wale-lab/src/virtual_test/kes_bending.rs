@@ -121,7 +121,8 @@ mod tests {
     fn the_rigidity_of_a_known_fabric_is_measured_in_the_instruments_unit() {
         // B = 2k_θ: 0.04, 0.1 and 0.07 gf·cm²/cm.
         let [weft, bias, warp] = [0.04, 0.1, 0.07].map(|b| 0.5 * b * GF_CM2_PER_CM);
-        let membrane = MembraneStiffness { xx: 400.0, xy: 20.0, yy: 500.0, ss: 40.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 400.0, xy: 20.0, yy: 500.0, ss: 40.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness { weft, bias, warp }, areal_mass: 0.2 };
         for (angle, known) in [(0.0, 0.04), (FRAC_PI_4, 0.1), (FRAC_PI_2, 0.07)] {
             let test = KesBendingTest { angle, points: 4, ..KesBendingTest::default() };

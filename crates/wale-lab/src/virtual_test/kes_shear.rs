@@ -103,7 +103,8 @@ mod tests {
     #[test]
     fn a_cloth_of_stiff_yarns_tells_its_shear_stiffness_and_the_pull() {
         let (k_ss, stiff) = (30.0, 3e5);
-        let membrane = MembraneStiffness { xx: stiff, xy: 0.0, yy: stiff, ss: k_ss, n1: 0.0, n2: 0.0 };
+        let membrane =
+            MembraneStiffness { xx: stiff, xy: 0.0, yy: stiff, ss: k_ss, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 };
         let test = KesShearTest { points: 8, ..KesShearTest::default() };
         let found = test.run(&card).unwrap();

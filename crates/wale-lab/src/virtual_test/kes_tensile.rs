@@ -70,7 +70,7 @@ mod tests {
     use wale::energy::{BendingStiffness, MembraneStiffness};
 
     fn card(xx: f64, yy: f64) -> ShellCard {
-        let membrane = MembraneStiffness { xx, xy: 0.0, yy, ss: 30.0, n1: 0.0, n2: 0.0 };
+        let membrane = MembraneStiffness { xx, xy: 0.0, yy, ss: 30.0, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 }
     }
 

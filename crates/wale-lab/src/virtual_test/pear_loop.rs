@@ -100,7 +100,8 @@ mod tests {
 
     #[test]
     fn weight_draws_a_loop_long_and_clamps_side_by_side_make_a_pear() {
-        let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 300.0, ss: 60.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 300.0, xy: 20.0, yy: 300.0, ss: 60.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(2e-5), areal_mass: 0.2 };
         let test = PearLoopTest { distances: vec![0.01], width: 0.02, ..PearLoopTest::default() };
         let aspect =

@@ -102,7 +102,8 @@ mod tests {
     use wale::fabric::coordinates::BLOCK;
 
     fn card() -> ShellCard {
-        let membrane = MembraneStiffness { xx: 300.0, xy: 20.0, yy: 500.0, ss: 30.0, n1: 3.0, n2: 5.0 };
+        let membrane =
+            MembraneStiffness { xx: 300.0, xy: 20.0, yy: 500.0, ss: 30.0, n1: 3.0, n2: 5.0, ..MembraneStiffness::NONE };
         ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 }
     }
 

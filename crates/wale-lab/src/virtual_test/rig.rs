@@ -190,7 +190,8 @@ mod tests {
     use wale::energy::{BendingStiffness, MembraneStiffness};
 
     fn card() -> ShellCard {
-        let membrane = MembraneStiffness { xx: 30.0, xy: 5.0, yy: 90.0, ss: 8.0, n1: 2.0, n2: 4.0 };
+        let membrane =
+            MembraneStiffness { xx: 30.0, xy: 5.0, yy: 90.0, ss: 8.0, n1: 2.0, n2: 4.0, ..MembraneStiffness::NONE };
         ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 }
     }
 

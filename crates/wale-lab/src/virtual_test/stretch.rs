@@ -109,7 +109,8 @@ mod tests {
     #[test]
     fn a_cloth_without_contraction_is_drawn_by_the_closed_form() {
         // With neither k_xy nor an area term nothing contracts: F/w = k E (1 + s), E = s + s²/2.
-        let membrane = MembraneStiffness { xx: 200.0, xy: 0.0, yy: 300.0, ss: 10.0, n1: 0.0, n2: 0.0 };
+        let membrane =
+            MembraneStiffness { xx: 200.0, xy: 0.0, yy: 300.0, ss: 10.0, n1: 0.0, n2: 0.0, ..MembraneStiffness::NONE };
         let card = ShellCard { membrane, bending: BendingStiffness::isotropic(0.0), areal_mass: 0.0 };
         let force = |s: f64| 200.0 * (s + 0.5 * s * s) * (1.0 + s);
         let swatch = StretchTest::swatch().run(&card).unwrap();

@@ -276,7 +276,8 @@ fn bending_targets(fabric: &FabricFile, shell: &ShellFit, tile: &YarnTile) -> Ve
     }
     let angles = [0.0, std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2];
     let fitted = shell.bending.iter().flat_map(|fit| angles.into_iter().zip(fit.stiffness.to_array()));
-    fitted.map(|(angle, stiffness)| target(angle, stiffness)).collect()
+    // B = 2k_θ, and the second difference of a tile's energy is B.
+    fitted.map(|(angle, stiffness)| target(angle, 2.0 * stiffness)).collect()
 }
 
 /// Whether there is anything to which a yarn's bending can be fitted.

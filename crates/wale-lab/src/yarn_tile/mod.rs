@@ -3,6 +3,7 @@
 mod closest;
 mod coarse;
 mod constraints;
+mod drawn;
 mod equilibrium;
 mod kinds;
 mod material;
@@ -23,6 +24,7 @@ mod tests;
 mod tile;
 
 pub use coarse::CoarseDeformation;
+pub use drawn::drawn_curves;
 pub use equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolver};
 pub use material::RodMaterial;
 pub use of_structure::{StructureError, tile_of_chart, tile_of_draft};

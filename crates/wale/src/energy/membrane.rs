@@ -2,12 +2,19 @@
 
 use wale_numerics::check::Local;
 use wale_numerics::eigen::positive_part;
-use wale_numerics::jet::Real;
 use wale_numerics::jet::vector3::{add, cross, dot, scale, sub};
+use wale_numerics::jet::{Jet, Real};
 
 use super::element::{Element, point};
 
-/// The six in-plane stiffnesses of a fabric, `x` along its weft and `y` along its warp \[N/m\].
+/// The in-plane stiffnesses of a fabric, `x` along its weft and `y` along its warp \[N/m\]: the six of [Sperl2022, Eq. 1], and
+/// four more of a fabric that becomes stiffer as it is stretched, zero in the paper's law.
+///
+/// Differs from the paper: besides `½ εᵀ K ε` there may be a stiffening `⅓ Q^{3/2}`, with `Q = a² + 2 m_xy ab + b² + c²`,
+/// `a = ∛m_xx E₁₁`, `b = ∛m_yy E₂₂`, `c = ∛m_ss 2E₁₂`, so that a fabric pulled along its weft resists by `m_xx E₁₁²` more.
+/// The law of the paper lets stress and contraction grow as the first power of strain; those of measured knits and weaves
+/// grow faster, as their yarns straighten and lock. `Q` is positive definite, so the term is convex in the strain, and twice
+/// differentiable everywhere. Test `ten_measured_sheets` of the lab says what it is worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MembraneStiffness {
     /// `k_xx`: stretch along the weft.
@@ -22,30 +29,65 @@ pub struct MembraneStiffness {
     pub n1: f64,
     /// `k_n2`: change of area, logarithmic; keeps triangles from collapsing.
     pub n2: f64,
+    /// `m_xx`: stiffening along the weft.
+    pub stiffening_xx: f64,
+    /// `m_yy`: stiffening along the warp.
+    pub stiffening_yy: f64,
+    /// `m_ss`: stiffening in shear.
+    pub stiffening_ss: f64,
+    /// `m_xy`: coupling of the two stretches where they stiffen, between −1 and 1 \[–\].
+    pub stiffening_xy: f64,
 }
 
 impl MembraneStiffness {
     /// Number of stiffnesses.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 10;
+    /// Number of those of [Sperl2022, Eq. 1], which come first.
+    pub const QUADRATIC: usize = 6;
     /// Their names, in the order of [`Self::to_array`].
-    pub const NAMES: [&'static str; Self::COUNT] = ["k_xx", "k_xy", "k_yy", "k_ss", "k_n1", "k_n2"];
+    pub const NAMES: [&'static str; Self::COUNT] =
+        ["k_xx", "k_xy", "k_yy", "k_ss", "k_n1", "k_n2", "m_xx", "m_yy", "m_ss", "m_xy"];
+    /// No stiffness at all.
+    pub const NONE: Self = Self {
+        xx: 0.0,
+        xy: 0.0,
+        yy: 0.0,
+        ss: 0.0,
+        n1: 0.0,
+        n2: 0.0,
+        stiffening_xx: 0.0,
+        stiffening_yy: 0.0,
+        stiffening_ss: 0.0,
+        stiffening_xy: 0.0,
+    };
 
-    /// The six numbers \[N/m\].
+    /// The ten numbers \[N/m; the last –\].
     #[must_use]
     pub fn to_array(self) -> [f64; Self::COUNT] {
-        [self.xx, self.xy, self.yy, self.ss, self.n1, self.n2]
+        let stiffening = [self.stiffening_xx, self.stiffening_yy, self.stiffening_ss, self.stiffening_xy];
+        let [mxx, myy, mss, mxy] = stiffening;
+        [self.xx, self.xy, self.yy, self.ss, self.n1, self.n2, mxx, myy, mss, mxy]
     }
-    /// From the six numbers \[N/m\].
+    /// From the ten numbers \[N/m; the last –\].
     #[must_use]
-    pub fn from_array([xx, xy, yy, ss, n1, n2]: [f64; Self::COUNT]) -> Self {
-        Self { xx, xy, yy, ss, n1, n2 }
+    pub fn from_array([xx, xy, yy, ss, n1, n2, mxx, myy, mss, mxy]: [f64; Self::COUNT]) -> Self {
+        let (stiffening_xx, stiffening_yy, stiffening_ss, stiffening_xy) = (mxx, myy, mss, mxy);
+        Self { xx, xy, yy, ss, n1, n2, stiffening_xx, stiffening_yy, stiffening_ss, stiffening_xy }
     }
-    /// One of the six is 1 N/m, the others zero: the energy is linear in them, so this is its derivative by that one.
+    /// From the six numbers of [Sperl2022, Eq. 1] \[N/m\].
     #[must_use]
-    pub fn unit(index: usize) -> Self {
-        let mut array = [0.0; Self::COUNT];
-        array[index] = 1.0;
-        Self::from_array(array)
+    pub fn quadratic([xx, xy, yy, ss, n1, n2]: [f64; Self::QUADRATIC]) -> Self {
+        Self { xx, xy, yy, ss, n1, n2, ..Self::NONE }
+    }
+    /// Whether the fabric becomes stiffer as it is stretched.
+    #[must_use]
+    pub fn stiffens(&self) -> bool {
+        self.stiffening_xx != 0.0 || self.stiffening_yy != 0.0 || self.stiffening_ss != 0.0
+    }
+    /// How many of the numbers the fabric has: those of the paper, or all.
+    #[must_use]
+    pub fn used(&self) -> usize {
+        if self.stiffens() { Self::COUNT } else { Self::QUADRATIC }
     }
 
     /// Energy density \[J/m²\] of a deformation with the metric `[f₁·f₁, f₂·f₂, f₁·f₂]` and the area ratio `J`.
@@ -58,11 +100,66 @@ impl MembraneStiffness {
         let area = area_ratio.offset(-1.0).square().scale(self.n1);
         // Without the logarithm a collapsed triangle has a finite energy; 0 · ∞ would be no number.
         let log = if self.n2 == 0.0 { T::constant(0.0) } else { area_ratio.ln().square().scale(self.n2) };
-        quadratic.scale(0.5) + area + log
+        let whole = quadratic.scale(0.5) + area + log;
+        if !self.stiffens() {
+            return whole;
+        }
+        let [a, b, c] = self.stiffened([e1, e2, c]);
+        let q = a.square() + (a * b).scale(2.0 * self.stiffening_xy) + b.square() + c.square();
+        if q.value() > 0.0 { whole + (q * q.sqrt()).scale(1.0 / 3.0) } else { whole }
+    }
+
+    /// `a`, `b`, `c` of the stiffening.
+    fn stiffened<T: Real>(&self, [e1, e2, shear]: [T; 3]) -> [T; 3] {
+        [
+            e1.scale(self.stiffening_xx.cbrt()),
+            e2.scale(self.stiffening_yy.cbrt()),
+            shear.scale(self.stiffening_ss.cbrt()),
+        ]
+    }
+
+    /// Derivative of [`Self::density`] by the stiffness `index`, in the order of [`Self::to_array`] \[–; of the last J/m²\].
+    ///
+    /// By a stiffening that is zero it is said to be zero, though that by `m` goes as `m^{−1/3}`: such a fabric has none.
+    pub fn density_slope<T: Real>(&self, index: usize, [a, b, c]: [T; 3], area_ratio: T) -> T {
+        if index < Self::QUADRATIC {
+            // The energy is linear in these.
+            let mut array = [0.0; Self::COUNT];
+            array[index] = 1.0;
+            return Self::from_array(array).density([a, b, c], area_ratio);
+        }
+        let (e1, e2) = (a.offset(-1.0).scale(0.5), b.offset(-1.0).scale(0.5));
+        let [a, b, c] = self.stiffened([e1, e2, c]);
+        let q = a.square() + (a * b).scale(2.0 * self.stiffening_xy) + b.square() + c.square();
+        // Half the derivative of Q; ∂(⅓ Q^{3/2}) = ½ √Q ∂Q.
+        let over = |value: T, stiffness: f64| value.scale(if stiffness == 0.0 { 0.0 } else { 1.0 / (3.0 * stiffness) });
+        let half = match index - Self::QUADRATIC {
+            0 => over(a.square() + (a * b).scale(self.stiffening_xy), self.stiffening_xx),
+            1 => over(b.square() + (a * b).scale(self.stiffening_xy), self.stiffening_yy),
+            2 => over(c.square(), self.stiffening_ss),
+            _ => a * b,
+        };
+        if q.value() > 0.0 { q.sqrt() * half } else { T::constant(0.0) }
+    }
+
+    /// Derivatives of the stiffening by `(E₁₁, E₂₂, 2E₁₂)`, first and second.
+    fn stiffening(&self, strain: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
+        let root = [self.stiffening_xx.cbrt(), self.stiffening_yy.cbrt(), self.stiffening_ss.cbrt()];
+        let coupled = self.stiffening_xy * root[0] * root[1];
+        let form =
+            [[root[0] * root[0], coupled, 0.0], [coupled, root[1] * root[1], 0.0], [0.0, 0.0, root[2] * root[2]]];
+        let half: [f64; 3] = std::array::from_fn(|i| (0..3).map(|j| form[i][j] * strain[j]).sum());
+        let size = (0..3).map(|i| half[i] * strain[i]).sum::<f64>().max(0.0).sqrt();
+        if size == 0.0 {
+            return ([0.0; 3], [[0.0; 3]; 3]);
+        }
+        let second = std::array::from_fn(|i| std::array::from_fn(|j| size * form[i][j] + half[i] * half[j] / size));
+        (half.map(|slope| size * slope), second)
     }
 }
 
-/// A triangle of fabric: anisotropic St. Venant–Kirchhoff with Neo-Hookean terms that preserve its area.
+/// A triangle of fabric: anisotropic St. Venant–Kirchhoff with Neo-Hookean terms that preserve its area, and what
+/// [`MembraneStiffness`] adds for fabrics that stiffen.
 ///
 /// `V = A [½ εᵀ K ε + k_n1 (J − 1)² + k_n2 log² J]`, `ε = (E₁₁, E₂₂, 2E₁₂)`, `E = ½(FᵀF − I)`      [Sperl2022, Eq. 1]
 ///
@@ -138,6 +235,24 @@ impl Membrane {
         if below > 0.0 && (b < 0.0 || a < 0.0) { (2.0 * c / below).min(1.0) } else { 1.0 }
     }
 
+    /// Derivatives of `direction · gradient` by each stiffness, in the order of [`MembraneStiffness::to_array`].
+    #[must_use]
+    pub fn gradient_slopes(&self, q: &[f64; 9], direction: &[f64; 9]) -> [f64; MembraneStiffness::COUNT] {
+        let moved: [Jet<1>; 9] = std::array::from_fn(|k| {
+            let mut jet = Jet::constant(q[k]);
+            jet.gradient[0] = direction[k];
+            jet
+        });
+        let [f1, f2] = self.deformation(&moved);
+        let n = cross(f1, f2);
+        let (metric, area_ratio) = ([dot(f1, f1), dot(f2, f2), dot(f1, f2)], dot(n, n).sqrt());
+        let mut out = [0.0; MembraneStiffness::COUNT];
+        for (index, slope) in out.iter_mut().enumerate().take(self.stiffness.used()) {
+            *slope = self.area * self.stiffness.density_slope(index, metric, area_ratio).gradient[0];
+        }
+        out
+    }
+
     fn metric(f: &[[f64; 3]; 2]) -> [f64; 3] {
         [dot(f[0], f[0]), dot(f[1], f[1]), dot(f[0], f[1])]
     }
@@ -157,7 +272,7 @@ impl Membrane {
         let [d1, d2] = self.by_determinant(area_ratio);
         // d = ab − c².
         let g = [b, a, -2.0 * c];
-        let first = [
+        let mut first = [
             0.5 * (k.xx * e1 + k.xy * e2) + d1 * g[0],
             0.5 * (k.xy * e1 + k.yy * e2) + d1 * g[1],
             k.ss * c + d1 * g[2],
@@ -167,6 +282,17 @@ impl Membrane {
         for i in 0..3 {
             for j in 0..3 {
                 second[i][j] += d2 * g[i] * g[j];
+            }
+        }
+        if k.stiffens() {
+            // E₁₁ and E₂₂ change by half of what a and b do, 2E₁₂ as c does.
+            let (slope, curvature) = k.stiffening([e1, e2, c]);
+            let by = [0.5, 0.5, 1.0];
+            for i in 0..3 {
+                first[i] += by[i] * slope[i];
+                for j in 0..3 {
+                    second[i][j] += by[i] * by[j] * curvature[i][j];
+                }
             }
         }
         ByMetric { first, second }
@@ -275,7 +401,15 @@ mod tests {
     use super::super::element::testing::{Random, check, check_blend};
     use super::*;
 
-    const STIFFNESS: MembraneStiffness = MembraneStiffness { xx: 40.0, xy: 9.0, yy: 110.0, ss: 6.0, n1: 3.0, n2: 5.0 };
+    const STIFFNESS: MembraneStiffness =
+        MembraneStiffness { xx: 40.0, xy: 9.0, yy: 110.0, ss: 6.0, n1: 3.0, n2: 5.0, ..MembraneStiffness::NONE };
+    const STIFFENS: MembraneStiffness = MembraneStiffness {
+        stiffening_xx: 300.0,
+        stiffening_yy: 900.0,
+        stiffening_ss: 50.0,
+        stiffening_xy: 0.6,
+        ..STIFFNESS
+    };
 
     fn triangle(random: &mut Random, stiffness: MembraneStiffness) -> (Membrane, [f64; 9]) {
         let mut rest = [[0.0, 0.0], [1.0, 0.1], [0.3, 0.9]];
@@ -299,11 +433,67 @@ mod tests {
     }
 
     #[test]
+    fn derivatives_of_a_fabric_that_stiffens() {
+        let mut random = Random::new(10);
+        for _ in 0..50 {
+            let (element, q) = triangle(&mut random, STIFFENS);
+            check(&element, &q, 0.1);
+            check_blend(&element, &q, 1e-10);
+        }
+        // At rest the term is silent: no stress, and the paper's second derivatives.
+        let rest = [[0.1, 0.0], [1.0, 0.2], [0.2, 1.1]];
+        let at_rest = std::array::from_fn(|k| if k % 3 < 2 { rest[k / 3][k % 3] } else { 0.0 });
+        let of = |stiffness| Membrane::new(stiffness, rest).unwrap().convex(&at_rest);
+        let (with, without) = (of(STIFFENS), of(STIFFNESS));
+        for (a, b) in with.hessian.iter().flatten().zip(without.hessian.iter().flatten()) {
+            assert!((a - b).abs() < 1e-9, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_strip_that_is_held_in_width_stiffens_by_the_square_of_its_strain() {
+        let pulled = |stiffness, stretch: f64| {
+            let element = Membrane::new(stiffness, [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
+            // The unit square's force is twice that of the triangle's vertex; first Piola–Kirchhoff stress P = λ S.
+            2.0 * element.gradient(&[0.0, 0.0, 0.0, 1.0 + stretch, 0.0, 0.0, 0.0, 1.0, 0.0]).1[3]
+        };
+        for stretch in [0.05, 0.3, 1.0] {
+            let strain = stretch + 0.5 * stretch * stretch;
+            let more = pulled(STIFFENS, stretch) - pulled(STIFFNESS, stretch);
+            let known = (1.0 + stretch) * 300.0 * strain * strain;
+            assert!((more / known - 1.0).abs() < 1e-10, "{stretch}: {more} {known}");
+        }
+    }
+
+    #[test]
+    fn slopes_by_the_stiffnesses_are_those_of_differences() {
+        let mut random = Random::new(11);
+        for _ in 0..20 {
+            let (element, q) = triangle(&mut random, STIFFENS);
+            let direction: [f64; 9] = std::array::from_fn(|_| random.next());
+            let slopes = element.gradient_slopes(&q, &direction);
+            for (index, slope) in slopes.into_iter().enumerate() {
+                let step = 1e-4 * STIFFENS.to_array()[index];
+                let along = |by: f64| {
+                    let mut array = STIFFENS.to_array();
+                    array[index] += by;
+                    let moved = Membrane { stiffness: MembraneStiffness::from_array(array), ..element };
+                    moved.gradient(&q).1.iter().zip(&direction).map(|(g, d)| g * d).sum::<f64>()
+                };
+                let difference = (along(step) - along(-step)) / (2.0 * step);
+                assert!((slope - difference).abs() < 1e-6 * (1.0 + difference.abs()), "{index} {slope} {difference}");
+            }
+        }
+    }
+
+    #[test]
     fn derivatives_by_each_stiffness_alone() {
         let mut random = Random::new(6);
-        for index in 0..MembraneStiffness::COUNT {
+        for index in 0..MembraneStiffness::COUNT - 1 {
             for _ in 0..10 {
-                let (element, q) = triangle(&mut random, MembraneStiffness::unit(index));
+                let mut array = [0.0; MembraneStiffness::COUNT];
+                array[index] = 1.0;
+                let (element, q) = triangle(&mut random, MembraneStiffness::from_array(array));
                 check(&element, &q, 0.1);
                 check_blend(&element, &q, 1e-9);
             }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use wale::scene::Scene;
+use wale_lab::card_file::CardFile;
 use wale_lab::fabric_file::FabricFile;
 use wale_lab::network_fit::NetworkFit;
 use wale_lab::report::{Conclusion, Told, ablation_figure, ablations_csv, conclusion, curves_csv, curves_figure, page};
@@ -81,7 +82,8 @@ impl Fitted {
             write(&folder.join("ablations.svg"), figure.to_svg().map_err(bad)?.as_bytes())?;
             write(&folder.join(ABLATIONS), ablations_csv(&told).as_bytes())?;
         }
-        write(&folder.join(RESULTS[0]), self.shell.card.to_toml().as_bytes())
+        let card = CardFile { open: self.shell.open.clone(), ..self.shell.card.clone() };
+        write(&folder.join(RESULTS[0]), card.to_toml().as_bytes())
     }
 
     /// What was found, as JSON.

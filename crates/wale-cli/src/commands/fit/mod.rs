@@ -14,12 +14,12 @@ use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
 use wale_lab::card_file::YarnCard;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
-use wale_lab::shell::membrane_fit::MembraneFitSettings;
+use wale_lab::shell::membrane_fit::{MembraneFitSettings, MembraneLaw};
 use wale_lab::shell::of_fabric::{ShellFit, ShellFitError, fit_shell};
 use wale_lab::yarn_fit::of_fabric::{bending_is_known, structure_tile, yarn_problems};
 use wale_lab::yarn_fit::problem::YarnProblem;
 
-use crate::arguments::fit::Fit;
+use crate::arguments::fit::{Fit, Law};
 use crate::exit::{Code, Failure};
 use crate::opened::scene_failure;
 use crate::signals::Signals;
@@ -55,7 +55,7 @@ pub fn fit(arguments: &Fit) -> Result<(), Failure> {
     for (index, fabric) in fabrics.iter().enumerate().filter(|_| with_yarn) {
         structure_tile(fabric).map_err(|error| named(index, &error))?;
     }
-    let shells = arguments.fabrics.iter().zip(&fabrics).map(|(path, fabric)| shell(path, fabric));
+    let shells = arguments.fabrics.iter().zip(&fabrics).map(|(path, fabric)| shell(arguments, path, fabric));
     let mut shells: Vec<ShellFit> = shells.collect::<Result<_, _>>()?;
     if !with_yarn {
         if arguments.elsewhere.ask {
@@ -154,8 +154,12 @@ fn read(path: &Path) -> Result<FabricFile, Failure> {
     })
 }
 
-fn shell(path: &Path, fabric: &FabricFile) -> Result<ShellFit, Failure> {
-    let settings = MembraneFitSettings { targets: yarn::TARGETS, ..MembraneFitSettings::default() };
+fn shell(arguments: &Fit, path: &Path, fabric: &FabricFile) -> Result<ShellFit, Failure> {
+    let law = match arguments.law {
+        Law::Quadratic => MembraneLaw::Quadratic,
+        Law::Stiffening => MembraneLaw::Stiffening,
+    };
+    let settings = MembraneFitSettings { law, targets: yarn::TARGETS, ..MembraneFitSettings::default() };
     fit_shell(fabric, &settings).map_err(|error| {
         let code = match error {
             ShellFitError::NoStretchTest => Code::BadInput,

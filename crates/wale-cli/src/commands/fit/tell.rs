@@ -83,10 +83,11 @@ pub fn found_json(
 ) -> serde_json::Value {
     // Infinite factors are no numbers in JSON.
     let factors = |within: &[f64]| within.iter().map(|w| w.is_finite().then_some(*w)).collect::<Vec<Option<f64>>>();
+    let used = found.membrane.stiffness.used();
     json!({
         "folder": folder,
-        "membrane_N_per_m": found.membrane.stiffness.to_array(),
-        "membrane_within": factors(&found.card.membrane_within),
+        "membrane_N_per_m": found.membrane.stiffness.to_array()[..used],
+        "membrane_within": factors(&found.card.membrane_within[..used]),
         "force_error": found.membrane.force_error,
         "compression_error": found.membrane.compression_error,
         "bending_N_m": found.bending.as_ref().map(|fit| fit.stiffness.to_array()),
@@ -125,10 +126,13 @@ pub fn lines(found: &ShellFit, yarn: Option<&YarnFit>, contacts: Option<&Network
         100.0 * found.membrane.force_error,
         100.0 * found.membrane.compression_error
     )];
-    let values = found.membrane.stiffness.to_array();
-    for ((name, value), within) in MembraneStiffness::NAMES.into_iter().zip(values).zip(found.card.membrane_within) {
+    let (values, used) = (found.membrane.stiffness.to_array(), found.membrane.stiffness.used());
+    for ((name, value), within) in
+        MembraneStiffness::NAMES.into_iter().zip(values).zip(found.card.membrane_within).take(used)
+    {
         let known = if within <= 3.0 { format!("× or ÷ {within:.2}") } else { "not determined".to_owned() };
-        lines.push(format!("  {name} {value:10.3} N/m   {known}"));
+        let unit = if name == "m_xy" { "   " } else { "N/m" };
+        lines.push(format!("  {name} {value:10.3} {unit}   {known}"));
     }
     if let Some(bending) = &found.bending {
         lines.push(format!("bending: mean error {:.1} % of the loops' aspect", 100.0 * bending.aspect_error));

@@ -54,7 +54,8 @@ pub fn card(card: CardFile, place: &Path, arguments: &Common, needs: Needs) -> R
     if needs.mass && mass.is_none() {
         return Err(lacks("mass by area", "--areal-mass \"170 g/m^2\""));
     }
-    let mut remarks = Vec::new();
+    let assumed = card.open.iter().filter(|what| what.starts_with("assumed: "));
+    let mut remarks: Vec<String> = assumed.cloned().collect();
     let open: Vec<&str> = MembraneStiffness::NAMES
         .into_iter()
         .zip(card.membrane_within)

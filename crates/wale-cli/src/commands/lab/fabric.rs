@@ -140,7 +140,7 @@ fn needs(test: &Test) -> Needs {
     Needs { bending, mass }
 }
 
-/// The card of a fabric file, where `wale fit` puts it.
+/// The card of a fabric file: where `wale fit` puts it, or the one kept beside the file.
 fn fitted(fabric: &Path) -> Result<PathBuf, Failure> {
     // That it is a fabric file at all is said before what is missing beside it.
     FabricFile::read(fabric).map_err(|error| match error {
@@ -148,11 +148,14 @@ fn fitted(fabric: &Path) -> Result<PathBuf, Failure> {
         FabricFileError::Curve(error) => Failure::new(Code::BadInput, error),
     })?;
     let card = fabric.with_extension("fit").join("card.toml");
-    if card.is_file() {
-        return Ok(card);
+    let kept = fabric.with_file_name("card.toml");
+    for card in [&card, &kept] {
+        if card.is_file() {
+            return Ok(card.clone());
+        }
     }
     let message = format!(
-        "{} has no card yet, {} is not there: run `wale fit {}` first",
+        "{} has no card yet, neither {} nor card.toml beside it: run `wale fit {}` first",
         fabric.display(),
         card.display(),
         fabric.display()

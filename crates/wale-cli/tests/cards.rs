@@ -1,0 +1,67 @@
+//! Every fabric that is kept with its card: the file and the card read, name each other, and the cloth can be pulled and draped.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use wale::scene::TextFile;
+use wale_lab::card_file::CardFile;
+use wale_lab::fabric_file::FabricFile;
+use wale_lab::yarn_tile::read_pattern;
+
+fn fabrics() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics");
+    let mut found: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    // One whose tests do not tell all that a garment needs has no card.
+    found.retain(|folder| folder.join("card.toml").is_file());
+    found.sort();
+    found
+}
+
+fn wale(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_wale")).args(arguments).output().unwrap()
+}
+
+#[test]
+fn five_fabrics_have_what_a_sheet_of_them_needs() {
+    let ready = fabrics().into_iter().filter(|folder| {
+        let fabric = FabricFile::read(&folder.join("fabric.toml")).unwrap_or_else(|error| panic!("{error}"));
+        let card = CardFile::of(&TextFile::read(&folder.join("card.toml"), "card").unwrap())
+            .unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(card.title, fabric.title);
+        assert_eq!(card.areal_mass, fabric.areal_mass);
+        // What the file assumes, the card says.
+        for what in &fabric.assumed {
+            assert!(card.open.contains(&format!("assumed: {what}")), "{}: {what}", folder.display());
+        }
+        if let Some(yarn) = &card.yarn {
+            let tile = folder.join(&yarn.tile);
+            let text = fs::read_to_string(&tile).unwrap();
+            read_pattern(&tile.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"));
+        }
+        card.areal_mass.is_some() && card.bending.is_some()
+    });
+    assert!(ready.count() >= 5);
+}
+
+#[test]
+fn each_is_pulled_and_draped_from_its_fabric_file() {
+    let out = tempfile::tempdir().unwrap();
+    for folder in fabrics() {
+        let file = folder.join("fabric.toml");
+        let name = folder.file_name().unwrap().to_string_lossy().into_owned();
+        let into = out.path().join(&name);
+        let [file, into] = [&file, &into].map(|path| path.to_str().unwrap());
+        let run = |arguments: &[&str]| -> serde_json::Value {
+            let output = wale(&[arguments, &[file, "--out", into, "--json"]].concat());
+            assert!(output.status.success(), "{name}: {}", String::from_utf8_lossy(&output.stderr));
+            serde_json::from_slice(&output.stdout).unwrap()
+        };
+        let pulled = run(&["lab", "kes-tensile", "--direction", "weft"]);
+        assert!(pulled["results"][0].is_object(), "{pulled}");
+        // A coarse sheet under a small weight: that it hangs, not how.
+        let draped = run(&["lab", "drape", "--starts", "1", "--edge", "20 mm"]);
+        let coefficient = draped["results"][0]["drape_coefficient"].as_f64().unwrap();
+        assert!((0.05..1.0).contains(&coefficient), "{name}: {draped}");
+    }
+}
