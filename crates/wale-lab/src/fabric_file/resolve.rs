@@ -24,6 +24,10 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         let what = format!("schema {} is not known", text.schema);
         return Err(file.error("schema", what, format!("write schema = {SCHEMA}")).into());
     }
+    if !text.rigidity.is_empty() && !text.bending.is_empty() {
+        let what = "bending is given twice, by loops and by rigidities".to_owned();
+        return Err(file.error("rigidity.0", what, "leave one of them out").into());
+    }
     let mut inputs = vec![path.to_owned()];
     let yarns: Vec<Yarn> = text.yarn.iter().map(yarn).collect();
     let shares: Vec<f64> = yarns.iter().filter_map(|yarn| yarn.share).collect();
@@ -57,10 +61,6 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         }
         let curve = LoopCurve::of(&read.table, &read.request)?;
         bending.push(LoopTest { direction: read.direction, specimen: read.specimen, curve });
-    }
-    if !text.rigidity.is_empty() && !text.bending.is_empty() {
-        let what = "bending is given twice, by loops and by rigidities".to_owned();
-        return Err(file.error("rigidity.0", what, "leave one of them out").into());
     }
     let mut rigidity = Vec::new();
     for (index, test) in text.rigidity.iter().enumerate() {
