@@ -50,7 +50,8 @@ def fit(client, wale, fabric, out, more=(), after_round=lambda count: None):
         questions = call([*command, "--ask"]).splitlines()
         if not questions:
             break
-        problem = client.scatter((pathlib.Path(out) / "problem.json").read_text(), broadcast=True)
+        # With each question, and not scattered: what is scattered is lost with the worker that holds it, and scattering fails while one goes.
+        problem = (pathlib.Path(out) / "problem.json").read_text()
         futures = [client.submit(answer, wale, problem, question, pure=False, retries=3) for question in questions]
         told = []
         for future in as_completed(futures):
