@@ -65,7 +65,7 @@ impl AblationKind {
         }
     }
 
-    /// The figure of [Sperl2022] that shows it, if one does.
+    /// The figure of [Sperl2022, section 9] that shows it, if one does.
     #[must_use]
     pub fn figure(self) -> Option<&'static str> {
         match self {
