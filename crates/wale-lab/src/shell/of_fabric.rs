@@ -46,7 +46,7 @@ fn strip(measured: &MeasuredStretch, test: &crate::fabric_file::StretchTest) -> 
 }
 
 /// Bending stiffnesses from rigidities that instruments printed, if there are those of weft and warp.
-fn printed(rigidity: &[Rigidity], open: &mut Vec<String>) -> Option<BendingStiffness> {
+pub(crate) fn printed(rigidity: &[Rigidity], open: &mut Vec<String>) -> Option<BendingStiffness> {
     let along = |degrees: f64| rigidity.iter().find(|test| (test.direction.to_degrees() - degrees).abs() < 1.0);
     let [weft, warp] = [along(0.0)?.value, along(90.0)?.value];
     let mean = || {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use thiserror::Error;
-use wale::energy::{ContactPhase, ContactReading};
+use wale::energy::{BendingStiffness, ContactPhase, ContactReading};
 use wale::scene::ErrorClass;
 
 pub use super::ablation::Ablation;
@@ -12,7 +12,7 @@ use super::problem::YarnProblem;
 use super::pull::PullSettings;
 use super::space::RodSpace;
 use super::target::Target;
-use crate::fabric_file::{FabricFile, Structure};
+use crate::fabric_file::{FabricFile, Rigidity, Structure};
 use crate::shell::of_fabric::ShellFit;
 use crate::shell::uniform::uniform_stretch;
 use crate::shell::{ShellError, StretchCurve, StretchPoint};
@@ -266,22 +266,46 @@ fn tension(tile: &YarnTile, targets: &[Target]) -> f64 {
     targets.iter().map(share).fold(0.0, f64::max).max(f64::MIN_POSITIVE)
 }
 
-/// Bending stiffnesses that the tile should have: those that instruments printed, or those of the fitted shell, along weft, bias and
+/// Rigidities that the tile should have: those that instruments printed, or those of the fitted shell, along weft, bias and
 /// warp. None if bending was not measured.
 fn bending_targets(fabric: &FabricFile, shell: &ShellFit, tile: &YarnTile) -> Vec<BendingTarget> {
     let curvature = CURVATURE / tile.periods()[0].max(tile.periods()[1]);
-    let target = |angle: f64, stiffness: f64| BendingTarget { angle, stiffness, curvature };
-    if !fabric.rigidity.is_empty() {
-        return fabric.rigidity.iter().map(|test| target(test.direction, test.value)).collect();
+    let known = rigidities(&fabric.rigidity, shell.bending.as_ref().map(|fit| &fit.stiffness));
+    known.into_iter().map(|known| BendingTarget { angle: known.direction, stiffness: known.value, curvature }).collect()
+}
+
+/// Rigidities `B` as they were printed, or else those of a shell, `B = 2k_θ`: the second difference of a tile's energy is `B`.
+fn rigidities(printed: &[Rigidity], fitted: Option<&BendingStiffness>) -> Vec<Rigidity> {
+    if !printed.is_empty() {
+        return printed.to_vec();
     }
     let angles = [0.0, std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2];
-    let fitted = shell.bending.iter().flat_map(|fit| angles.into_iter().zip(fit.stiffness.to_array()));
-    // B = 2k_θ, and the second difference of a tile's energy is B.
-    fitted.map(|(angle, stiffness)| target(angle, 2.0 * stiffness)).collect()
+    let of_shell = fitted.into_iter().flat_map(|fitted| angles.into_iter().zip(fitted.to_array()));
+    of_shell.map(|(direction, stiffness)| Rigidity { direction, value: 2.0 * stiffness }).collect()
 }
 
 /// Whether there is anything to which a yarn's bending can be fitted.
 #[must_use]
 pub fn bending_is_known(fabric: &FabricFile, shell: &ShellFit) -> bool {
     !fabric.rigidity.is_empty() || shell.bending.is_some()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shell::of_fabric::printed;
+
+    #[test]
+    fn a_rigidity_is_the_same_target_by_an_instrument_and_by_the_shell_made_of_it() {
+        let angles = [0.0, std::f64::consts::FRAC_PI_4, std::f64::consts::FRAC_PI_2];
+        let of_instrument: Vec<Rigidity> = angles
+            .into_iter()
+            .zip([1e-6, 3e-6, 4e-6])
+            .map(|(direction, value)| Rigidity { direction, value })
+            .collect();
+        let shell = printed(&of_instrument, &mut Vec::new()).expect("weft and warp are there");
+        assert_eq!(rigidities(&of_instrument, None), of_instrument);
+        assert_eq!(rigidities(&[], Some(&shell)), of_instrument);
+        assert_eq!(rigidities(&[], None), []);
+    }
 }

@@ -138,15 +138,10 @@ pub fn fast(card: &Card) -> Result<Report, TestFailure> {
             ],
         });
     }
-    groups.push(Group {
-        name: "bias".to_owned(),
-        direction: Some(45f64.to_radians()),
-        numbers: vec![
-            Number::new("EB5", found.bias_extension, "EB5", PERCENT, "%"),
-            Number::new("G_N_per_m", found.shear_rigidity, "G = 123/EB5", 1.0, "N/m"),
-            Number::new("G_uniform_N_per_m", found.uniform_shear_rigidity, "G of a uniform strip", 1.0, "N/m"),
-        ],
-    });
+    let mut bias = fast_bias(found.bias_extension, found.shear_rigidity);
+    let uniform = found.uniform_shear_rigidity;
+    bias.numbers.push(Number::new("G_uniform_N_per_m", uniform, "G of a uniform strip", 1.0, "N/m"));
+    groups.push(bias);
     let loads = wale_lab::virtual_test::fast::LOADS;
     let mut rows = Vec::new();
     let mut series = Vec::new();
@@ -169,4 +164,13 @@ pub fn fast(card: &Card) -> Result<Report, TestFailure> {
         ],
         extras: Vec::new(),
     })
+}
+
+/// FAST-3 along the bias, of whatever model.
+pub(super) fn fast_bias(extension: f64, shear_rigidity: f64) -> Group {
+    let numbers = vec![
+        Number::new("EB5", extension, "EB5", PERCENT, "%"),
+        Number::new("G_N_per_m", shear_rigidity, "G = 123/EB5", 1.0, "N/m"),
+    ];
+    Group { name: "bias".to_owned(), direction: Some(45f64.to_radians()), numbers }
 }

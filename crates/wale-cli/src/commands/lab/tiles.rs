@@ -241,14 +241,7 @@ fn fast<S: UniformStrip>(
         rows.extend(points.iter().map(|[s, load]| vec![angle.to_degrees(), *s, *load]));
         series.push(line(angle, points.iter().map(|[s, load]| [s / PERCENT, load / GF_PER_CM])));
     }
-    groups.push(Group {
-        name: "bias".to_owned(),
-        direction: Some(45f64.to_radians()),
-        numbers: vec![
-            Number::new("EB5", found.bias_extension, "EB5", PERCENT, "%"),
-            Number::new("G_N_per_m", found.shear_rigidity, "G = 123/EB5", 1.0, "N/m"),
-        ],
-    });
+    groups.push(in_plane::fast_bias(found.bias_extension, found.shear_rigidity));
     rows.push(vec![45.0, found.bias_extension, loads[0]]);
     let mut remarks = vec!["uniform strips, as the formula of G supposes; FAST-1 and FAST-4 are missing".to_owned()];
     if rigidity.is_none() {
