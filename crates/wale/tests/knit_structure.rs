@@ -280,3 +280,23 @@ fn check_rigid_motion(network: &Network, yarn: &YarnCard, card: &FabricCard, abs
         assert!(sum.iter().all(|s| s.abs() <= 1e-9 * size.max(1e-12)), "{}: {sum:?}", set.name());
     }
 }
+
+#[test]
+fn an_end_that_is_out_is_held_where_the_last_contact_was_that_it_left() {
+    let (_, card) = cards();
+    let chart = Chart::garter().repeat(6, 6).unwrap();
+    let mut network = knit::fabric(&chart, Working::Flat { first_row: Side::RightSide }, &card);
+    assert_eq!(network.places_held(), network.position);
+    let yarn = (0..network.yarn_count()).map(YarnId::new).max_by_key(|y| network.yarn_passes(*y).len()).unwrap();
+    let passes = network.yarn_passes(yarn);
+    network.pulled_out = vec![false; network.pass_count()];
+    // Three contacts at the beginning and two at the end.
+    (1..=3).for_each(|k| network.pulled_out[passes.start + k] = true);
+    (2..=3).for_each(|k| network.pulled_out[passes.end - k] = true);
+    let node = |pass: usize| network.pass_node[pass].index();
+    let mut expected = network.position.clone();
+    expected[node(passes.start)] = network.position[node(passes.start + 3)];
+    expected[node(passes.end - 1)] = network.position[node(passes.end - 3)];
+    assert!(expected != network.position);
+    assert_eq!(network.places_held(), expected);
+}
