@@ -49,6 +49,10 @@ pub struct LeastSquaresSettings<const P: usize> {
     pub bounds: [[f64; 2]; P],
     /// Noise of the data that a parameter's interval reckons with even where the fit is closer \[–\].
     pub least_noise: f64,
+    /// Relative gain of a step below which the fit is at its end.
+    pub least_gain: f64,
+    /// Sum of squares below which nothing is left to be gained.
+    pub enough: f64,
 }
 
 /// Parameters that were found.
@@ -86,8 +90,6 @@ const LONGEST_STEP: f64 = 1.5;
 /// Damping at first, and that at which nothing is gained by more.
 const FIRST_DAMPING: f64 = 1e-2;
 const LARGEST_DAMPING: f64 = 1e10;
-/// Relative gain below which the fit is at its end.
-const LEAST_GAIN: f64 = 1e-9;
 
 /// Positive parameters of least squares: their coordinates are logarithms, and `evaluate` gets the parameters and gives derivatives by
 /// the logarithms. Otherwise as [`fit`].
@@ -150,6 +152,12 @@ pub fn fit<const P: usize, E: Send>(
 }
 
 impl<const P: usize> LeastSquaresSettings<P> {
+    /// A fit that goes on until a step gains nothing that numbers can tell.
+    #[must_use]
+    pub fn to_the_end(max_evaluations: usize, bounds: [[f64; 2]; P], least_noise: f64) -> Self {
+        Self { max_evaluations, bounds, least_noise, least_gain: 1e-9, enough: 0.0 }
+    }
+
     fn is_free(&self, k: usize) -> bool {
         self.bounds[k][0] < self.bounds[k][1]
     }
@@ -184,7 +192,7 @@ fn descend<const P: usize, E>(
     let mut damping = FIRST_DAMPING;
     let mut evaluations = 1;
     let mut system = SmallSystem::default();
-    while evaluations < settings.max_evaluations && damping < LARGEST_DAMPING && cost > 0.0 {
+    while evaluations < settings.max_evaluations && damping < LARGEST_DAMPING && cost > settings.enough {
         let normal = here.normal();
         let slope: [f64; P] =
             std::array::from_fn(|i| here.values.iter().zip(&here.slopes).map(|(r, row)| r * row[i]).sum());
@@ -219,7 +227,7 @@ fn descend<const P: usize, E>(
                 let gain = (cost - lower) / cost;
                 (place, here, cost) = (trial, found, lower);
                 damping = (0.2 * damping).max(1e-14);
-                if gain < LEAST_GAIN {
+                if gain < settings.least_gain {
                     break;
                 }
             }
@@ -235,7 +243,7 @@ mod tests {
     use super::*;
 
     fn settings<const P: usize>() -> LeastSquaresSettings<P> {
-        LeastSquaresSettings { max_evaluations: 200, bounds: [[1e-6, 1e6]; P], least_noise: 0.01 }
+        LeastSquaresSettings::to_the_end(200, [[1e-6, 1e6]; P], 0.01)
     }
 
     /// `y = a e^{−bt}` with a third parameter that plays no role.
@@ -307,7 +315,7 @@ mod tests {
             asked.lock().unwrap().push(at[0]);
             Err(at[0])
         };
-        let whole = LeastSquaresSettings { max_evaluations: 9, bounds: [[-10.0, 10.0]], least_noise: 0.01 };
+        let whole = LeastSquaresSettings::to_the_end(9, [[-10.0, 10.0]], 0.01);
         let end = fit(evaluate, &[[1.0], [2.0]], &whole).unwrap_err();
         let mut asked = asked.into_inner().unwrap();
         asked.sort_by(f64::total_cmp);

@@ -9,11 +9,13 @@ use wale::scene::{Scene, text_of_preset};
 use wale_lab::shell::StretchCurve;
 use wale_lab::yarn_fit::gradients::{GradientSettings, Round, improve};
 use wale_lab::yarn_fit::of_fabric::{Ablation, Part, problem, problems};
-use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, P, Question, YarnProblem};
+use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, P, Question, YarnProblem, ask_all, best_scale};
 use wale_lab::yarn_fit::run::{Way, YarnFit, fit_together, fit_yarn};
 use wale_lab::yarn_fit::swarm::SwarmSettings;
 use wale_lab::yarn_fit::{Progress, RodSpace, Target, pull};
-use wale_lab::yarn_tile::{RestShapeSettings, RodParameter, YarnTile, contact_radius, tile_of_chart};
+use wale_lab::yarn_tile::{
+    RestShapeSettings, RodParameter, YarnTile, contact_radius, estimate_rest_shapes, tile_of_chart,
+};
 
 const STIFFNESS: f64 = 100.0;
 const POINTS: usize = 4;
@@ -24,7 +26,7 @@ fn known() -> (YarnProblem, [f64; P]) {
     let scene = Scene::from_text(&text_of_preset(PresetName::WorstedWool), "preset.toml").unwrap();
     let tile = tile_of_chart(&Chart::stockinette(), &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
     let mut problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
-    problem.rest = RestShapeSettings { late_rounds: 4, ..problem.rest };
+    problem.rest = RestShapeSettings { growing_rounds: 2, late_rounds: 2, ..problem.rest };
     let touching = contact_radius(&problem.tile);
     let bending = 0.05 * 0.25 * STIFFNESS * touching * touching;
     let holding = 1e-2 * bending / touching.powi(4);
@@ -144,6 +146,84 @@ fn all_numbers_that_the_curves_feel_are_found_again_from_near() {
     for (k, (found, truth)) in RodSpace::parameters(found.coordinates).iter().zip(truth).enumerate() {
         assert!((found / truth - 1.0).abs() < 0.02, "{}: {found} {truth}", RodParameter::NAMES[k]);
     }
+}
+
+#[test]
+fn a_fit_comes_back_from_an_onset_that_no_yarn_reaches() {
+    let (mut problem, mut truth) = known();
+    let [soft, onset] = [RodParameter::SoftStretch as usize, RodParameter::Onset as usize];
+    (truth[soft], truth[onset]) = (4.0, 0.01);
+    problem.space.bounds = std::array::from_fn(|k| match k {
+        k if k == soft => [1.0, STIFFNESS],
+        k if k == onset => [0.0, 0.15],
+        k => [truth[k]; 2],
+    });
+    let (rested, material) = (problem.rested(&truth).unwrap(), problem.base.with_parameters(truth));
+    for target in &mut problem.targets {
+        let answers = pull(&rested, &material, target.angle, &target.stretches(), false, &problem.pull).unwrap();
+        for (point, answer) in target.points.iter_mut().zip(&answers) {
+            point[1..].copy_from_slice(&[answer.point.force, answer.point.compression]);
+        }
+    }
+    let mut from = truth;
+    (from[soft], from[onset]) = (8.0, 0.14);
+    let (problems, here) = (std::slice::from_ref(&problem), Here::new(&problem));
+    let slope = |at: [f64; P]| {
+        let Ok(found) = ask_all(problems, &here, &Question::of(at, POINTS, true));
+        found.unwrap().slopes.iter().map(|row| row[onset].abs()).fold(0.0, f64::max)
+    };
+    assert!(slope(from) == 0.0 && slope(truth) > 1e-3, "{} {}", slope(from), slope(truth));
+    let round = Round { starts: 1, evaluations: 12, samples: POINTS };
+    let silent = |_: &wale_lab::yarn_fit::Step| {};
+    let from = RodSpace::coordinates(from);
+    let Ok(found) = improve(problems, &here, from, &round, 0.01, &Progress::new(&silent));
+    let found = RodSpace::parameters(found.unwrap().coordinates);
+    assert!((found[onset] / 0.01 - 1.0).abs() < 0.02 && (found[soft] / 4.0 - 1.0).abs() < 0.02, "{found:?}");
+}
+
+#[test]
+fn yarns_that_are_too_soft_in_everything_are_off_by_one_factor() {
+    let (problem, truth) = known();
+    let mut softer = truth;
+    for (k, number) in softer.iter_mut().enumerate() {
+        if k != RodParameter::Onset as usize && k != RodParameter::OuterRadius as usize {
+            *number *= 0.3;
+        }
+    }
+    let (problems, here) = (std::slice::from_ref(&problem), Here::new(&problem));
+    let question = Question::of(softer, POINTS, false);
+    let Ok(found) = ask_all(problems, &here, &question);
+    let Ok(scaled) = best_scale(problems, &here, &question);
+    let ((scale, cost), off) = (scaled.unwrap(), found.unwrap().cost());
+    // The inner contact is not one of the numbers, and stays.
+    assert!((0.3 * scale - 1.0).abs() < 0.02 && cost < 1e-3 * off && off > 0.1, "{scale} {cost} {off}");
+    let place = problem.space.scaled(&RodSpace::coordinates(softer), 1.0 / 0.3);
+    let bending = RodParameter::Bending as usize;
+    assert!((RodSpace::parameters(place)[bending] / truth[bending] - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn rest_shapes_of_yarns_that_grow_change_little_with_the_material() {
+    let scene = Scene::from_text(&text_of_preset(PresetName::WorstedWool), "preset.toml").unwrap();
+    let tile = tile_of_chart(&Chart::rib(1, 1).unwrap(), &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
+    let problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
+    let radius = contact_radius(&problem.tile);
+    let bending = 0.05 * 0.25 * STIFFNESS * radius * radius;
+    let holding = 0.1 * bending / radius.powi(4);
+    let truth = [8.0, STIFFNESS, 0.05, bending, 1.05 * radius, 0.05 * STIFFNESS / radius, holding];
+    let mut near = RodSpace::coordinates(truth);
+    let off = [1.2e-3, 0.0, 3e-3, 5.5e-3, 7e-4, 6.6e-3, -2.6e-3];
+    near.iter_mut().zip(off).for_each(|(coordinate, off)| *coordinate += off);
+    let apart = |growing_rounds: usize| {
+        let settings = RestShapeSettings { growing_rounds, late_rounds: 1, ..problem.rest };
+        let [a, b] = [truth, RodSpace::parameters(near)].map(|parameters| {
+            estimate_rest_shapes(&problem.tile, &problem.base.with_parameters(parameters), &settings).unwrap().tile
+        });
+        let pairs = a.vertices().iter().zip(b.vertices());
+        pairs.map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max) / radius
+    };
+    let (grown, at_once) = (apart(8), apart(0));
+    assert!(grown > 0.0 && grown < 0.01 && at_once > 10.0 * grown, "{grown} {at_once}");
 }
 
 #[test]

@@ -143,8 +143,7 @@ pub fn fit_network(
     // A stiffness of zero has no logarithm that would change it.
     let bounds: [[f64; 2]; P] =
         std::array::from_fn(|k| if given[k] > 0.0 { settings.bounds[k].map(f64::ln) } else { [0.0; 2] });
-    let least =
-        LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
+    let least = LeastSquaresSettings::to_the_end(settings.max_evaluations, bounds, settings.least_noise);
     let starts: Vec<[f64; P]> = settings.starts.iter().map(|start| start.map(f64::ln)).collect();
     let found = match fit(evaluate, &starts, &least) {
         Ok(found) => found.ok_or(NetworkFitError::NoStart)?,

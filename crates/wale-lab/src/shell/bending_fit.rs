@@ -88,11 +88,11 @@ pub fn fit_bending(curves: &[PearCurve], card: &ShellCard, least_noise: f64) -> 
         Some(out)
     };
     let starts = STARTS.map(|length| [stiffness(length); BendingStiffness::COUNT]);
-    let settings = LeastSquaresSettings {
-        max_evaluations: MOST_EVALUATIONS,
-        bounds: [BOUNDS.map(stiffness); BendingStiffness::COUNT],
+    let settings = LeastSquaresSettings::to_the_end(
+        MOST_EVALUATIONS,
+        [BOUNDS.map(stiffness); BendingStiffness::COUNT],
         least_noise,
-    };
+    );
     let failed = || ShellError::Fit("no start led to a fabric whose loops came to rest".into());
     let least_squares = fit_positive(evaluate, &starts, &settings).ok_or_else(failed)?;
     let points = loops(&least_squares.parameters).ok_or_else(failed)?;

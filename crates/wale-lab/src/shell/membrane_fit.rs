@@ -187,8 +187,7 @@ pub fn fit_membrane(measured: &[MeasuredStretch], settings: &MembraneFitSettings
     };
 
     let bounds = law.bounds(unit, &guess);
-    let search =
-        LeastSquaresSettings { max_evaluations: settings.max_evaluations, bounds, least_noise: settings.least_noise };
+    let search = LeastSquaresSettings::to_the_end(settings.max_evaluations, bounds, settings.least_noise);
     let failed = || ShellError::Fit("no start led to a fabric whose tests could be done".into());
     let least_squares = match fit(|place: &_, _| Ok::<_, Infallible>(evaluate(place)), &places, &search) {
         Ok(found) => found.ok_or_else(failed)?,

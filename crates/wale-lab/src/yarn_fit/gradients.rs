@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::problem::{Answers, P, Question, YarnProblem, ask_all};
+use super::problem::{Answers, P, Question, YarnProblem, ask_all, best_scale};
 use super::progress::Progress;
 use super::sequence::halton;
 use super::space::RodSpace;
@@ -39,7 +39,7 @@ impl Default for GradientSettings {
         Self {
             screened: 48,
             screening_samples: 3,
-            rounds: [round(8, 5, 4), round(3, 8, 4), round(1, 20, 8)],
+            rounds: [round(8, 6, 4), round(3, 10, 4), round(1, 30, 8)],
             least_noise: 0.01,
         }
     }
@@ -65,10 +65,11 @@ pub struct Found {
     pub least_squares: Option<LeastSquaresFit<P>>,
 }
 
-/// The round in which the best place is improved from smaller onsets, too.
-const WITH_EARLIER_ONSETS: usize = 1;
-/// Parts of the onset that they are.
-const EARLIER: [f64; 2] = [0.4, 0.1];
+/// Parts of an onset that no yarn reaches, of which the best is gone on with.
+const EARLIER: [f64; 6] = [0.9, 0.8, 0.65, 0.5, 0.3, 0.1];
+/// Relative gain of a step below which least squares ends, and the sum of squares below which nobody could measure a difference.
+const LEAST_GAIN: f64 = 1e-3;
+const ENOUGH: f64 = 1e-8;
 /// Change of a coordinate by which the rest shapes' part of a derivative is found.
 const DIFFERENCE: f64 = 1e-2;
 /// Places that are nearer than this in every coordinate are one.
@@ -89,23 +90,21 @@ pub fn fit_by_gradients<A: Answers>(
     settings: &GradientSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
-    let cost = |coordinates: &[f64; P]| -> Result<Option<f64>, A::Unanswered> {
+    let look = |coordinates: &[f64; P]| -> Result<Option<Found>, A::Unanswered> {
         let question = Question::of(RodSpace::parameters(*coordinates), settings.screening_samples, false);
-        let cost = ask_all(problems, answers, &question)?.map(|residuals| residuals.cost());
-        progress.tell(cost, &question.at);
-        Ok(cost.filter(|cost| cost.is_finite()))
+        let found = best_scale(problems, answers, &question)?;
+        progress.tell(found.map(|(_, cost)| cost), &question.at);
+        Ok(found.map(|(scale, cost)| {
+            let coordinates = problems[0].space.scaled(coordinates, scale);
+            Found { coordinates, cost, least_squares: None }
+        }))
     };
     let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problems[0].space.at_parts(halton(k))).collect();
-    let looked: Vec<Result<Option<f64>, A::Unanswered>> = places.par_iter().map(cost).collect();
-    let looked: Vec<Option<f64>> = looked.into_iter().collect::<Result<_, _>>()?;
-    let seen = places.into_iter().zip(looked);
-    let mut known: Vec<Found> =
-        seen.filter_map(|(coordinates, cost)| Some(Found { coordinates, cost: cost?, least_squares: None })).collect();
+    let looked: Vec<Result<Option<Found>, A::Unanswered>> = places.par_iter().map(look).collect();
+    let mut known: Vec<Found> = looked.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     best_first(&mut known);
-    for (k, round) in settings.rounds.iter().enumerate().filter(|(_, round)| round.starts > 0) {
-        let mut from: Vec<[f64; P]> = known.iter().take(round.starts).map(|found| found.coordinates).collect();
-        let best = known.first().filter(|best| k == WITH_EARLIER_ONSETS && best.least_squares.is_some());
-        from.extend(best.into_iter().flat_map(|best| with_earlier_onsets(&problems[0], &best.coordinates)));
+    for round in settings.rounds.iter().filter(|round| round.starts > 0) {
+        let from: Vec<[f64; P]> = known.iter().take(round.starts).map(|found| found.coordinates).collect();
         let improved: Vec<Result<Option<Found>, A::Unanswered>> = from
             .par_iter()
             .map(|&from| improve(problems, answers, from, round, settings.least_noise, progress))
@@ -134,24 +133,60 @@ fn best_first(known: &mut Vec<Found>) {
     *known = kept;
 }
 
-/// The same place with smaller onsets: one beyond what the yarns are stretched by is felt by nothing, and least squares does not come
-/// back from there.
-fn with_earlier_onsets(problem: &YarnProblem, place: &[f64; P]) -> Vec<[f64; P]> {
-    let onset = RodParameter::Onset as usize;
-    let [low, high] = problem.space.coordinate_bounds()[onset];
-    let earlier = |part: f64| {
-        let mut from = *place;
-        from[onset] = low + part * (from[onset] - low);
-        from
-    };
-    if low < high { EARLIER.map(earlier).to_vec() } else { Vec::new() }
-}
-
-/// Least squares from one place.
+/// Least squares from one place, and once more from an earlier onset if no yarn came to the one that it ends with: what is felt by
+/// nothing has no derivative that would lead back.
 ///
 /// # Errors
 /// As [`fit_by_gradients`].
 pub fn improve<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    from: [f64; P],
+    round: &Round,
+    least_noise: f64,
+    progress: &Progress<'_>,
+) -> Result<Option<Found>, A::Unanswered> {
+    let Some(first) = descend(problems, answers, from, round, least_noise, progress)? else { return Ok(None) };
+    let Some(from) = with_earlier_onset(problems, answers, &first, round.samples, progress)? else {
+        return Ok(Some(first));
+    };
+    let second = descend(problems, answers, from, round, least_noise, progress)?;
+    Ok(Some(second.filter(|second| second.cost < first.cost).unwrap_or(first)))
+}
+
+/// The best place with an earlier onset, and stiffnesses that make up for it, if no yarn reaches the onset of a place that was found.
+fn with_earlier_onset<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    found: &Found,
+    samples: usize,
+    progress: &Progress<'_>,
+) -> Result<Option<[f64; P]>, A::Unanswered> {
+    let onset = RodParameter::Onset as usize;
+    let space = &problems[0].space;
+    let [low, high] = space.coordinate_bounds()[onset];
+    let felt = found.least_squares.as_ref().is_some_and(|least_squares| least_squares.uncertainty[onset].is_finite());
+    if felt || low >= high || found.cost < ENOUGH {
+        return Ok(None);
+    }
+    let rest = RodSpace::parameters(found.coordinates);
+    let look = |part: &f64| -> Result<Option<(f64, [f64; P])>, A::Unanswered> {
+        let mut place = found.coordinates;
+        place[onset] = low + part * (place[onset] - low);
+        // Yarns at rest are stretched by too little for an onset to matter.
+        let question = Question { rest, ..Question::of(RodSpace::parameters(place), samples, false) };
+        let looked = best_scale(problems, answers, &question)?;
+        progress.tell(None, &question.at);
+        Ok(looked.map(|(scale, cost)| (cost, space.scaled(&place, scale))))
+    };
+    let looked: Vec<Result<Option<(f64, [f64; P])>, A::Unanswered>> = EARLIER.par_iter().map(look).collect();
+    let looked: Vec<Option<(f64, [f64; P])>> = looked.into_iter().collect::<Result<_, _>>()?;
+    let best = looked.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(best.map(|(_, place)| place))
+}
+
+/// Least squares from one place.
+fn descend<A: Answers>(
     problems: &[YarnProblem],
     answers: &A,
     from: [f64; P],
@@ -171,7 +206,11 @@ pub fn improve<A: Answers>(
         Ok(Some(residuals))
     };
     let bounds = problems[0].space.coordinate_bounds();
-    let search = LeastSquaresSettings { max_evaluations: round.evaluations, bounds, least_noise };
+    let search = LeastSquaresSettings {
+        least_gain: LEAST_GAIN,
+        enough: ENOUGH,
+        ..LeastSquaresSettings::to_the_end(round.evaluations, bounds, least_noise)
+    };
     let found = fit(evaluate, &[from], &search)?;
     Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
 }

@@ -79,6 +79,16 @@ pub struct Evaluation {
     pub bending: Vec<BendingAnswer>,
 }
 
+impl Evaluation {
+    /// The same places with no stress in them.
+    fn without_stress(&self) -> Self {
+        let mut still = self.clone();
+        still.stretch.iter_mut().flatten().for_each(|answer| answer.point.force = 0.0);
+        still.bending.iter_mut().for_each(|answer| answer.stiffness = 0.0);
+        still
+    }
+}
+
 /// Somebody who answers questions: `None` where the tile cannot be tested.
 pub trait Answers: Sync {
     /// Why a question is not answered now.
@@ -133,6 +143,43 @@ impl YarnProblem {
         }
         out
     }
+}
+
+/// By how much all stiffnesses together would best be larger, and the sum of squares with them; `None` where one of the fabrics cannot be
+/// tested, or bears nothing.
+///
+/// The stress of elastic yarns goes up and down with all of their stiffnesses, while they lie where they lay. A place that is off by
+/// nothing but such a factor is as good as the right one.
+///
+/// # Errors
+/// If one question is not answered now.
+pub fn best_scale<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    question: &Question,
+) -> Result<Option<(f64, f64)>, A::Unanswered> {
+    let one = |(fabric, problem): (usize, &YarnProblem)| {
+        let question = Question { fabric, ..*question };
+        let parts = |found: Evaluation| {
+            let whole = problem.residuals(&question, &found).values;
+            let without = problem.residuals(&question, &found.without_stress()).values;
+            let squares = |a: &dyn Fn(usize) -> f64, b: &dyn Fn(usize) -> f64| -> f64 {
+                (0..whole.len()).map(|k| a(k) * b(k)).sum()
+            };
+            let (of_stress, rest) = (|k: usize| whole[k] - without[k], |k: usize| without[k]);
+            [squares(&of_stress, &of_stress), squares(&of_stress, &rest), squares(&rest, &rest)]
+        };
+        Ok(answers.answer(&question)?.map(parts))
+    };
+    let found: Vec<Result<Option<[f64; 3]>, A::Unanswered>> = problems.par_iter().enumerate().map(one).collect();
+    let mut sums = [0.0; 3];
+    for parts in found {
+        let Some(parts) = parts? else { return Ok(None) };
+        sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
+    }
+    let [square, mixed, rest] = sums;
+    let (scale, cost) = (-mixed / square, rest - mixed * mixed / square);
+    Ok((scale > 0.0 && scale.is_finite() && cost.is_finite()).then_some((scale, cost)))
 }
 
 /// What tells problems that are fitted together from others: SHA-256 of their JSON.

@@ -86,6 +86,17 @@ impl RodSpace {
         std::array::from_fn(|k| slopes[k] * if k == ONSET { ONSET_UNIT } else { parameters[k] })
     }
 
+    /// A place where all stiffnesses that are fitted are larger by a factor, as far as the bounds let them be.
+    #[must_use]
+    pub fn scaled(&self, coordinates: &[f64; P], factor: f64) -> [f64; P] {
+        let bounds = self.coordinate_bounds();
+        let is_stiffness = |k: usize| k != ONSET && k != RodParameter::OuterRadius as usize;
+        std::array::from_fn(|k| {
+            let by = if is_stiffness(k) { factor.ln() } else { 0.0 };
+            (coordinates[k] + by).clamp(bounds[k][0], bounds[k][1])
+        })
+    }
+
     /// A place within the bounds, each coordinate a part of the way from its least to its largest value.
     #[must_use]
     pub fn at_parts(&self, parts: [f64; P]) -> [f64; P] {
