@@ -237,6 +237,24 @@ fn a_limp_drape_on_a_coarse_mesh_is_warned_of() {
 }
 
 #[test]
+fn swatches_leave_pictures_of_each_direction() {
+    let folder = tempfile::tempdir().unwrap();
+    let card = folder.path().join("card.toml");
+    write_card(&card);
+    let directions = ["--direction", "bias", "--direction", "30 deg"];
+    let output = wale(&[&["lab", "stretch", card.to_str().unwrap(), "--to", "5 %"], &directions[..]].concat());
+    assert!(output.status.success(), "{}", error(&output));
+    for name in ["bias", "30-deg"] {
+        let picture = fs::read_to_string(folder.path().join(format!("card.lab/stretch-{name}-sheet.svg"))).unwrap();
+        assert!(picture.starts_with("<svg") && picture.matches("<path").count() > 500, "{name}");
+    }
+    // A picture that is there is not overwritten unasked.
+    fs::remove_file(folder.path().join("card.lab/stretch.csv")).unwrap();
+    let again = wale(&["lab", "stretch", card.to_str().unwrap(), "--to", "5 %", "--direction", "bias"]);
+    assert_eq!(again.status.code(), Some(3), "{}", error(&again));
+}
+
+#[test]
 fn a_drape_leaves_a_picture_of_its_sheet() {
     let folder = tempfile::tempdir().unwrap();
     let card = folder.path().join("card.toml");

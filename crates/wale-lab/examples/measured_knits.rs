@@ -1,14 +1,13 @@
 //! Yarns fitted to hand-knitted stockinette and garter of one acrylic yarn [Singal2024], and garter foretold from stockinette alone.
 //!
 //! ```text
-//! cargo run --release -p wale-lab --example measured_knits -- [all|near|foretell|sizes [SUMMARY.csv [NUMBERS]]]
+//! cargo run --release -p wale-lab --example measured_knits -- [all|near|foretell|sizes [NUMBERS]]
 //! ```
 //!
 //! `near` fits garter by least squares from the yarn of stockinette alone; `foretell` leaves out the fit of garter. Both leave out that of
 //! stockinette if the seven numbers of its yarn are given. `sizes` fits nothing and tells how the tiles lie.
 
-use std::fmt::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use wale_lab::fabric_file::FabricFile;
@@ -24,70 +23,13 @@ use wale_lab::yarn_tile::{YarnTile, contact_radius};
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 const POINTS: usize = 8;
-/// A swatch of the yarn. Lengths are those with which the authors compute one stitch (`code/fabric_simulations` of
-/// `sabetta/stitch-by-stitch`): the whole of its yarn, and the cell in which it begins. Stockinette of 33 by 33 stitches of that cell is
-/// as large as the swatch was.
-struct Swatch {
-    stitch: &'static str,
-    loop_length: &'static str,
-    spacing: [&'static str; 2],
-}
+const FABRICS: [&str; 2] = ["acrylic-stockinette", "acrylic-garter"];
 
-const FABRICS: [Swatch; 2] = [
-    Swatch { stitch: "stockinette", loop_length: "11.28 mm", spacing: ["2.9 mm", "2.03 mm"] },
-    Swatch { stitch: "garter", loop_length: "10.55 mm", spacing: ["3.2 mm", "1.29 mm"] },
-];
-/// Thickness of the yarn's core, which the authors' yarns are pressed to: 0.65 mm in stockinette, 0.51 mm in garter.
-const DIAMETER: &str = "0.6 mm";
-/// Width of garter pulled along the course \[mm\]. The table's 35.2 mm is less than the 48.4 mm between two pins in it; if its clamps held
-/// as much of it as those of stockinette did, it was 58 mm wide, if it had as many courses as wales, 52 mm.
-const GARTER_WIDTH: f64 = 55.0;
-
-/// A fabric file of the means over the trials, in a folder.
-fn fabric(table: &Path, folder: &Path, swatch: &Swatch) -> Result<FabricFile, Failure> {
-    let Swatch { stitch, loop_length, spacing: [wales, courses] } = swatch;
-    let text = std::fs::read_to_string(table)?;
-    let mut rows = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
-    let heads = rows.next().ok_or("the table is empty")?;
-    let column = |name: &str| heads.iter().position(|head| *head == name).ok_or(format!("there is no column {name}"));
-    let (kind, direction, force) = (column("stitch")?, column("direction")?, column("line_force_N_per_mm")?);
-    let (strain, across) = (column("axial_strain_mean")?, column("transverse_strain_mean")?);
-    let (width, length) = (column("fabric_width_mm")?, column("initial_clamp_length_mm")?);
-    let rows: Vec<Vec<&str>> =
-        rows.filter(|row| row[column("yarn").unwrap_or(0)] == "acrylic" && row[kind] == *stitch).collect();
-    let mut file = format!(
-        "schema = 1\ntitle = \"Acrylic {stitch}\"\n[structure]\nscene = \"{stitch}-scene.toml\"\nwale_spacing = \"{wales}\"\n\
-         course_spacing = \"{courses}\"\n"
-    );
-    for (letter, name) in [("X", "course"), ("Y", "wale")] {
-        let mut curve = "strain,line force (N/mm),transverse strain\n0,0,0\n".to_owned();
-        let first = rows.iter().find(|row| row[direction] == letter).ok_or("a direction is missing")?;
-        let told: f64 = first[width].parse()?;
-        let true_width = if *stitch == "garter" && letter == "X" { GARTER_WIDTH } else { told };
-        for row in rows.iter().filter(|row| row[direction] == letter) {
-            let line_force = row[force].parse::<f64>()? * told / true_width;
-            let _ = writeln!(curve, "{},{line_force},{}", row[strain], row[across]);
-        }
-        let _ = write!(
-            file,
-            "[[stretch]]\ndirection = \"{name}\"\nfile = \"{stitch}-{name}.csv\"\nlength = \"{} mm\"\nwidth = \"{} mm\"\n",
-            first[length], true_width
-        );
-        std::fs::write(folder.join(format!("{stitch}-{name}.csv")), curve)?;
-    }
-    let scene = format!(
-        "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\ndiameter = \"{DIAMETER}\"\n[fabric]\nloop_length = \"{loop_length}\"\n\
-         [fabric.chart]\npattern = \"{stitch}\"\ncolumns = 8\nrows = 8\n"
-    );
-    std::fs::write(folder.join(format!("{stitch}-scene.toml")), scene)?;
-    let path = folder.join(format!("{stitch}.toml"));
-    std::fs::write(&path, file)?;
-    Ok(FabricFile::read(&path)?)
-}
-
-fn problem(fabric: &FabricFile) -> Result<YarnProblem, Failure> {
+fn problem(name: &str) -> Result<YarnProblem, Failure> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics").join(name).join("fabric.toml");
+    let fabric = FabricFile::read(&path)?;
     let settings = MembraneFitSettings { targets: POINTS, ..MembraneFitSettings::default() };
-    Ok(yarn_problem(fabric, &fit_shell(fabric, &settings)?, Ablation::default())?)
+    Ok(yarn_problem(&fabric, &fit_shell(&fabric, &settings)?, Ablation::default())?)
 }
 
 /// What a tile does with a yarn, and how far that is from the targets.
@@ -128,22 +70,12 @@ fn describe(tile: &YarnTile) {
 }
 
 fn main() -> Result<(), Failure> {
-    let near = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/knit-tensile-singal2024/summary.csv");
     let what = std::env::args().nth(1).unwrap_or_else(|| "all".to_owned());
-    let table = std::env::args().nth(2).map_or(near, PathBuf::from);
-    if !table.exists() {
-        println!("{} is not there: nothing to fit", table.display());
-        return Ok(());
-    }
-    let folder = tempfile::tempdir()?;
-    let problems = FABRICS
-        .iter()
-        .map(|swatch| problem(&fabric(&table, folder.path(), swatch)?))
-        .collect::<Result<Vec<_>, Failure>>()?;
-    let given: Vec<f64> = std::env::args().skip(3).map(|number| number.parse()).collect::<Result<_, _>>()?;
+    let problems = FABRICS.iter().map(|name| problem(name)).collect::<Result<Vec<_>, Failure>>()?;
+    let given: Vec<f64> = std::env::args().skip(2).map(|number| number.parse()).collect::<Result<_, _>>()?;
     let mut of_stockinette: Option<[f64; P]> = given.try_into().ok();
-    for (k, (swatch, problem)) in FABRICS.iter().zip(&problems).enumerate() {
-        println!("{}", swatch.stitch);
+    for (k, (name, problem)) in FABRICS.iter().zip(&problems).enumerate() {
+        println!("{name}");
         describe(&problem.tile);
         if what == "sizes" || (what != "all" && (k > 0 || of_stockinette.is_some())) {
             continue;

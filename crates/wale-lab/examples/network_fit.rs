@@ -17,12 +17,12 @@ use wale_lab::yarn_fit::of_fabric::uniform_targets;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let contacts = std::env::args().nth(1).unwrap_or_else(|| "thick".to_owned());
-    let loop_length = std::env::args().nth(2).unwrap_or_else(|| "22.56".to_owned());
+    let loop_length = std::env::args().nth(2).unwrap_or_else(|| "11.28".to_owned());
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette/fabric.toml");
     let fabric = FabricFile::read(&folder)?;
     let targets = uniform_targets(&fabric, &fit_shell(&fabric, &MembraneFitSettings::default())?)?;
     let scene = format!(
-        "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\n[fabric]\nloop_length = \"{loop_length} mm\"\ncontacts = \"{contacts}\"\n\
+        "schema = 1\n[yarn]\npreset = \"thick-acrylic\"\ndiameter = \"0.6 mm\"\n[fabric]\nloop_length = \"{loop_length} mm\"\ncontacts = \"{contacts}\"\n\
          [fabric.chart]\npattern = \"stockinette\"\ncolumns = 1\nrows = 1\n"
     );
     let scene = Scene::from_text(&scene, "network_fit.toml").map_err(|error| error.to_string())?;

@@ -67,6 +67,39 @@ pub struct SensitivePoint {
     pub compression_slope: [f64; MembraneStiffness::COUNT],
 }
 
+/// A swatch as it lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sheet {
+    /// Places of the vertices at rest, along and across the pull \[m\].
+    pub rest: Vec<[f64; 2]>,
+    /// Where they are \[m\].
+    pub places: Vec<[f64; 3]>,
+    /// Vertices of the triangles.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+impl Sheet {
+    /// The largest principal stretch of each triangle, one where it is not deformed \[–\].
+    #[must_use]
+    pub fn principal_stretches(&self) -> Vec<f64> {
+        let one = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| v as usize);
+            let (p, q) =
+                ([0, 1].map(|i| self.rest[b][i] - self.rest[a][i]), [0, 1].map(|i| self.rest[c][i] - self.rest[a][i]));
+            let determinant = p[0] * q[1] - p[1] * q[0];
+            let along = [0, 1, 2].map(|i| self.places[b][i] - self.places[a][i]);
+            let other = [0, 1, 2].map(|i| self.places[c][i] - self.places[a][i]);
+            // F = [b − a, c − a] [p q]⁻¹, column by column, and the larger eigenvalue of FᵀF.
+            let x: [f64; 3] = std::array::from_fn(|i| (along[i] * q[1] - other[i] * p[1]) / determinant);
+            let y: [f64; 3] = std::array::from_fn(|i| (other[i] * p[0] - along[i] * q[0]) / determinant);
+            let product = |a: &[f64; 3], b: &[f64; 3]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+            let (xx, xy, yy) = (product(&x, &x), product(&x, &y), product(&y, &y));
+            (0.5 * (xx + yy) + (0.25 * (xx - yy).powi(2) + xy * xy).sqrt()).sqrt()
+        };
+        self.triangles.iter().map(one).collect()
+    }
+}
+
 /// A swatch in its clamps.
 struct Clamped {
     rectangle: Rectangle,
@@ -80,6 +113,18 @@ impl ClampedStretch {
     /// # Errors
     /// [`ShellError`]: an impossible number, or a swatch that does not come to rest.
     pub fn run(&self, card: &ShellCard, stretches: &[f64]) -> Result<Vec<StretchPoint>, ShellError> {
+        self.run_with_sheet(card, stretches).map(|(points, _)| points)
+    }
+
+    /// The same, and how the swatch lies at the last of them.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_with_sheet(
+        &self,
+        card: &ShellCard,
+        stretches: &[f64],
+    ) -> Result<(Vec<StretchPoint>, Sheet), ShellError> {
         let mut clamped = self.clamp(card)?;
         let mut points = Vec::with_capacity(stretches.len());
         let mut from = 0.0;
@@ -89,7 +134,9 @@ impl ClampedStretch {
             points.push(clamped.measure(stretch));
             from = stretch;
         }
-        Ok(points)
+        let Clamped { rectangle: Rectangle { mesh, .. }, q, .. } = clamped;
+        let places = (0..mesh.points.len()).map(|v| [0, 1, 2].map(|i| q[BLOCK * v + i])).collect();
+        Ok((points, Sheet { rest: mesh.points, places, triangles: mesh.triangles }))
     }
 
     /// The same with the derivatives by the six stiffnesses, exact through equilibrium: for each number that is measured one
@@ -206,6 +253,21 @@ mod tests {
             // Clamps stiffen an end of about a width's length by a few per cent.
             assert!((point.force / 0.02 / strip.force - 1.0).abs() < 0.02, "{point:?} {strip:?}");
         }
+    }
+
+    #[test]
+    fn a_swatch_is_stretched_most_in_its_middle_and_as_far_as_its_clamps_say() {
+        let test = ClampedStretch { edge: 0.01, ..ClampedStretch::default() };
+        let (points, sheet) = test.run_with_sheet(&card(), &[0.3]).unwrap();
+        assert_eq!(points, test.run(&card(), &[0.3]).unwrap());
+        let stretches = sheet.principal_stretches();
+        let rest = Sheet { places: sheet.rest.iter().map(|&[x, y]| [x, y, 0.0]).collect(), ..sheet.clone() };
+        assert!(rest.principal_stretches().iter().all(|s| (s - 1.0).abs() < 1e-12));
+        let ends =
+            sheet.places.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |m, x| [m[0].min(x[0]), m[1].max(x[0])]);
+        assert!((ends[1] - ends[0] - 0.13).abs() < 1e-12);
+        let mean = stretches.iter().sum::<f64>() / stretches.len() as f64;
+        assert!((mean - 1.3).abs() < 0.02, "{mean}");
     }
 
     #[test]

@@ -23,7 +23,7 @@ pub mod uniform;
 
 pub use cantilever::Cantilever;
 pub use card::ShellCard;
-pub use clamped_stretch::{ClampedStretch, OutOfPlane};
+pub use clamped_stretch::{ClampedStretch, OutOfPlane, Sheet};
 pub use error::ShellError;
 pub use mesh::TriangleMesh;
 pub use pear_loop::PearLoop;

@@ -2,7 +2,7 @@
 
 use super::rig::{Rig, Specimen};
 use super::units::GF_PER_CM;
-use crate::shell::clamped_stretch::{ClampedStretch, OutOfPlane};
+use crate::shell::clamped_stretch::{ClampedStretch, OutOfPlane, Sheet};
 use crate::shell::error::{ShellError, positive};
 use crate::shell::{ShellCard, StretchPoint};
 
@@ -74,8 +74,9 @@ impl StretchTest {
             ..ClampedStretch::default()
         };
         let mut points = vec![StretchPoint { stretch: 0.0, force: 0.0, compression: 0.0 }];
-        points.extend(test.run(card, &stretches)?);
-        Ok(StretchResult { width: self.specimen.width, points })
+        let (pulled, sheet) = test.run_with_sheet(card, &stretches)?;
+        points.extend(pulled);
+        Ok(StretchResult { width: self.specimen.width, points, sheet })
     }
 }
 
@@ -86,6 +87,8 @@ pub struct StretchResult {
     pub width: f64,
     /// Stretch, force \[N\] and compression at mid-length, from rest on.
     pub points: Vec<StretchPoint>,
+    /// How it lies at the end.
+    pub sheet: Sheet,
 }
 
 impl StretchResult {

@@ -71,23 +71,31 @@ pub fn estimate_rest_shapes(
     let early = EquilibriumSettings { max_iterations: settings.early_iterations, ..settings.equilibrium };
     let before = TileSolver::new(&tile, material, settings.equilibrium)?.solve(&CoarseDeformation::REST)?;
     let mut stress = Vec::new();
+    // From one turn to the next a tile changes little.
+    let mut last: Option<TileSolver> = None;
+    let mut rest = |tile: &YarnTile, material: &RodMaterial, equilibrium: EquilibriumSettings| {
+        let mut solver = TileSolver::new(tile, material, equilibrium)?.trusting(last.as_ref());
+        let found = solver.solve(&CoarseDeformation::REST);
+        last = Some(solver);
+        found
+    };
     for round in 1..=settings.growing_rounds {
         let [outer, inner] = material.contact.map(|contact| contact.radius);
         let mut thinner = *material;
         thinner.contact[0].radius = inner + (outer - inner) * round as f64 / (settings.growing_rounds + 1) as f64;
-        let found = TileSolver::new(&tile, &thinner, settings.equilibrium)?.solve(&CoarseDeformation::REST)?;
+        let found = rest(&tile, &thinner, settings.equilibrium)?;
         tile = reset(&tile, &found, &lengths, settings.most_change);
     }
     for round in 0..settings.early_rounds + settings.late_rounds {
         let late = round >= settings.early_rounds;
         let of_round = if late { settings.equilibrium } else { early };
-        let found = TileSolver::new(&tile, material, of_round)?.solve(&CoarseDeformation::REST)?;
+        let found = rest(&tile, material, of_round)?;
         if late {
             stress.push(size(&found));
         }
         tile = reset(&tile, &found, &lengths, settings.most_change);
     }
-    let found = TileSolver::new(&tile, material, settings.equilibrium)?.solve(&CoarseDeformation::REST)?;
+    let found = rest(&tile, material, settings.equilibrium)?;
     stress.push(size(&found));
     let tile = moved(&tile, &found);
     let moved = tile

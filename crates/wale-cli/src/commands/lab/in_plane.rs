@@ -4,11 +4,12 @@ use wale::picture::{Panel, Plot};
 use wale_lab::shell::OutOfPlane;
 use wale_lab::virtual_test::stretch::Until;
 use wale_lab::virtual_test::units::{FAST_MM2, GF_CM_PER_CM2, GF_PER_CM, MM, PERCENT, UN_M};
-use wale_lab::virtual_test::{FastTest, KesTensileResult, KesTensileTest, StretchTest};
+use wale_lab::virtual_test::{FastTest, KesTensileResult, KesTensileTest, StretchResult, StretchTest};
 
 use super::card::Card;
 use super::failure::TestFailure;
-use super::report::{Group, Number, Report, digits, direction_name, heads};
+use super::report::{Extra, Group, Number, Report, digits, direction_name, heads};
+use super::swatch_picture::swatch_picture;
 use super::{in_directions, line};
 use crate::arguments::lab::{Directed, Stretch};
 
@@ -56,8 +57,17 @@ pub fn stretch(card: &Card, of: &Stretch, test: &'static str) -> Result<Report, 
         rows: rows.collect(),
         plot: stretch_plot(&card.title, &curves),
         remarks,
-        extras: Vec::new(),
+        extras: found.iter().map(|(angle, found)| picture(*angle, found)).collect(),
     })
+}
+
+/// Pictures of swatches that are pulled along the yarns and the bias; one along another direction has its angle in its name.
+pub const EXTRAS: [&str; 3] = ["-weft-sheet.svg", "-bias-sheet.svg", "-warp-sheet.svg"];
+
+fn picture(angle: f64, found: &StretchResult) -> Extra {
+    let name = direction_name(angle);
+    let file = name.replace('°', " deg").replace(' ', "-");
+    Extra { suffix: format!("-{file}-sheet.svg").into(), text: swatch_picture(&name, &found.sheet) }
 }
 
 /// Numbers of a specimen that was drawn to a force \[N\].

@@ -11,6 +11,7 @@ mod question;
 mod report;
 mod shear;
 mod sheet_picture;
+mod swatch_picture;
 mod tiles;
 mod yarns;
 
@@ -63,7 +64,11 @@ pub fn lab(arguments: &Lab) -> Result<(), Failure> {
         }
         return Ok(());
     }
-    let extras = if matches!(test, Test::Drape(_)) { &drape::EXTRAS[..] } else { &[] };
+    let extras = match test {
+        Test::Drape(_) => &drape::EXTRAS[..],
+        Test::Stretch(_) | Test::Strip(_) => &in_plane::EXTRAS[..],
+        _ => &[],
+    };
     let folder = |path: &PathBuf| common.results.out.clone().unwrap_or_else(|| path.with_extension("lab"));
     for path in &common.fabrics {
         refuse_taken(&folder(path), test.name(), &Report::suffixes(extras), common.results.force)?;
