@@ -1,13 +1,12 @@
 //! `wale lab` from a card to numbers, table and plot, and what it says of bad input.
 
-use std::fs;
-use std::io::Write;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+mod common;
 
-fn wale(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_wale")).args(arguments).output().unwrap()
-}
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+use common::{wale, wale_given};
 
 fn error(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
@@ -59,20 +58,6 @@ fn a_card_is_tested_and_told_in_the_units_of_instruments() {
         fs::read_to_string(out.join("picture-frame.json")).unwrap().trim(),
         String::from_utf8_lossy(&output.stdout).trim()
     );
-}
-
-/// As [`wale`], with a text for its standard input.
-fn told(arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_wale"))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    // A program that ends before it reads is no fault of the test.
-    let _ = child.stdin.take().unwrap().write_all(input.as_bytes());
-    child.wait_with_output().unwrap()
 }
 
 /// A card with the yarn of a plain weave, and its tile beside it.
@@ -171,7 +156,7 @@ fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
     let answers: Vec<String> = questions
         .lines()
         .map(|question| {
-            let output = told(&["lab", "--answer", "--threads", "1"], question);
+            let output = wale_given(&["lab", "--answer", "--threads", "1"], question);
             assert!(output.status.success(), "{}", error(&output));
             String::from_utf8(output.stdout).unwrap()
         })
@@ -180,15 +165,15 @@ fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
 
     // One is lost, one comes twice.
     let some = [&answers[2][..], &answers[0], &answers[2], &answers[3]].concat();
-    let rest = told(&with(&["--ask", "--tell", "-"]), &some);
+    let rest = wale_given(&with(&["--ask", "--tell", "-"]), &some);
     assert_eq!(String::from_utf8_lossy(&rest.stdout).trim_end(), questions.lines().nth(1).unwrap());
-    let lost = told(&with(&["--tell", "-"]), &some);
+    let lost = wale_given(&with(&["--tell", "-"]), &some);
     assert_eq!(lost.status.code(), Some(3));
     assert!(error(&lost).contains("one.toml: not all questions are answered"), "{}", error(&lost));
     // Fonts are part of the plots: too much to print where they differ.
     assert!(files("other") == written[1]);
     assert!(!folder.path().join("one.lab").exists());
-    let all = told(&with(&["--tell", "-", "--force"]), &answers.concat());
+    let all = wale_given(&with(&["--tell", "-", "--force"]), &answers.concat());
     assert!(all.status.success(), "{}", error(&all));
     assert_eq!(all.stdout, here.stdout);
     assert!([files("one"), files("other")] == written);
@@ -201,7 +186,7 @@ fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
         (format!("{}{changed}", answers[0]), "standard input:2: this question was answered before"),
         ("{\"id\":".to_owned(), "standard input:1:"),
     ] {
-        let output = told(&with(&["--tell", "-", "--force"]), &bad);
+        let output = wale_given(&with(&["--tell", "-", "--force"]), &bad);
         assert_eq!(output.status.code(), Some(3), "{}", error(&output));
         assert!(error(&output).contains(says), "{says}: {}", error(&output));
     }
@@ -212,7 +197,7 @@ fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
         (question.replacen("\"wale\":\"", "\"wale\":\"9", 1), "use the same version"),
         (question.replacen("\"question\":", "\"riddle\":", 1), "riddle"),
     ] {
-        let output = told(&["lab", "--answer"], &bad);
+        let output = wale_given(&["lab", "--answer"], &bad);
         assert_eq!(output.status.code(), Some(3), "{}", error(&output));
         assert!(error(&output).contains(says), "{says}: {}", error(&output));
     }

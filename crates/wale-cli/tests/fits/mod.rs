@@ -1,10 +1,14 @@
 //! Fabrics that are fitted in seconds, and how the program is asked to.
 #![allow(dead_code, reason = "each test uses a part")]
 
+#[path = "../common/mod.rs"]
+mod common;
+
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::Output;
+
+use common::wale_given;
 
 /// The fabric of the repository.
 pub fn acrylic() -> PathBuf {
@@ -31,17 +35,8 @@ pub fn small_fabric(folder: &Path, name: &str, pattern: &str, forces: [f64; 3]) 
 
 /// `wale fit` of fabrics, quickly, with a text for its standard input.
 pub fn fit(fabrics: &[&Path], arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_wale"))
-        .args(["fit", "--quick"])
-        .args(fabrics)
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
-    child.wait_with_output().unwrap()
+    let fabrics: Vec<&str> = fabrics.iter().map(|path| path.to_str().unwrap()).collect();
+    wale_given(&[&["fit", "--quick"], &fabrics[..], arguments].concat(), input)
 }
 
 /// What a program said of itself.
