@@ -9,11 +9,12 @@ use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
 use super::tile_equilibrium::TileSettings;
+use super::tile_stiffness::bending_and_length;
 use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, Dof, dof};
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
-use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
+use crate::model::{FabricCard, Network, PassId, YarnId, YarnRole, Yarns};
 
 /// Values of a block.
 const BLOCK_VALUES: usize = BLOCK * BLOCK;
@@ -42,38 +43,33 @@ pub(super) struct TileSystem {
 }
 
 impl TileSystem {
-    /// The system of a tile as it is brought to rest with these settings.
+    /// The system of a tile as it is brought to rest with these settings: a knit with periods that are unknown, a weave at its sett.
     ///
     /// # Panics
     /// If the tile is too large for memory.
-    pub fn of(network: &Network, yarns: &Yarns, card: &KnitCard, settings: &TileSettings) -> Self {
-        let stiffness = yarns.first().bending_stiffness / card.loop_length.powi(3);
-        Self::new(network, yarns, card, settings.bed * stiffness).expect("a tile fits in memory")
+    pub fn of(network: &Network, yarns: &Yarns, card: &FabricCard, settings: &TileSettings) -> Self {
+        let (bending, length) = bending_and_length(network, yarns, card);
+        let bed = settings.bed * (bending / length.powi(3));
+        let held = [card.woven().is_some(); 2];
+        Self::with(network, yarns, card, bed, TileCoordinates::new(network), held).expect("a tile fits in memory")
     }
 
-    /// `bed` \[N/m\] is the stiffness under every node.
-    ///
-    /// # Errors
-    /// If the system is too large.
-    pub fn new(network: &Network, yarns: &Yarns, card: &KnitCard, bed: f64) -> Result<Self, CholeskyError> {
-        Self::with(network, yarns, card, bed, TileCoordinates::new(network), [false; 2])
-    }
-
-    /// Over given coordinates, of which numbers of the plane may be held.
+    /// Over given coordinates, of which numbers of the plane may be held; `bed` \[N/m\] is the stiffness under every node.
     ///
     /// # Errors
     /// If the system is too large.
     pub fn with(
         network: &Network,
         yarns: &Yarns,
-        card: &KnitCard,
+        card: &FabricCard,
         bed: f64,
         mut coordinates: TileCoordinates,
         held: [bool; 2],
     ) -> Result<Self, CholeskyError> {
-        let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
+        let mechanics = Mechanics::new(network, yarns, card, &mut coordinates);
         let springs = self::bed(network, bed);
-        // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else.
+        // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else. A thread that lies
+        // straight across straight threads may also lie elsewhere on them, where nothing rubs: one of its places is held.
         let mut free = coordinates.own().free().to_vec();
         free[0] = false;
         free[1] = false;
@@ -81,6 +77,12 @@ impl TileSystem {
         for y in 0..network.yarn_count() {
             let first = PassId::new(network.yarn_passes(YarnId::new(y)).start);
             free[coordinates.own().slot(first)] = false;
+            let place = BLOCK * network.pass_node[first.index()].index();
+            match network.yarn_role[y] {
+                YarnRole::Knitted => {}
+                YarnRole::Warp => free[place] = false,
+                YarnRole::Weft => free[place + 1] = false,
+            }
         }
         let own = |dof: Dof| coordinates.source(dof).of as usize;
         let mut pairs = Vec::new();
@@ -205,6 +207,24 @@ impl TileSystem {
         let own = self.gradient.iter().fold(0.0f64, |m, g| m.max(g.abs()));
         let [w, h] = self.period_force();
         own.max(w.abs()).max(h.abs())
+    }
+
+    /// Largest force on any coordinate or number of the plane \[N\], those that are held too.
+    pub fn largest_force_of_all(&mut self, unknowns: &[f64]) -> f64 {
+        self.coordinates.place(unknowns, &mut self.world);
+        let n = self.coordinates.own().len();
+        let mut forces = vec![0.0; n + 2];
+        for set in sets(&self.mechanics, &self.bed) {
+            set.visit_gradient(&self.world, &mut |stencil, gradient| {
+                for (&dof, g) in stencil.iter().zip(gradient) {
+                    let source = self.coordinates.source(dof);
+                    forces[source.of as usize] += g;
+                    forces[n] += source.by[0] * g;
+                    forces[n + 1] += source.by[1] * g;
+                }
+            });
+        }
+        forces.iter().fold(0.0, |most, force: &f64| most.max(force.abs()))
     }
 
     /// Solves with the second derivatives and a multiple of the identity \[N/m\]; the right side is replaced by the solution. Whether

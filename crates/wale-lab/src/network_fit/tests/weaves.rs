@@ -1,0 +1,165 @@
+//! Weaves: straight threads that cross, of which the answers are known.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use wale::dynamics::stretched_tile::{StretchError, StretchedEquilibrium, TileReference};
+use wale::dynamics::tile_equilibrium::{TileSettings, relax_tile};
+use wale::dynamics::tile_stiffness::TileStiffness;
+use wale::model::{Network, WovenCard, YarnCard, Yarns};
+use wale::pattern::weave::{self, Draft, peirce};
+
+use super::{pulled, yarn};
+
+const P: usize = TileStiffness::COUNT;
+/// Distance of ends, and of picks \[m\].
+const SPACING: [f64; 2] = [0.5e-3, 0.6e-3];
+
+/// Cotton of the warp, and softer cotton of the weft.
+fn threads() -> [YarnCard; 2] {
+    let warp = YarnCard { radius: 0.135e-3, stretch_stiffness: 50.0, bending_stiffness: 5e-9, ..yarn() };
+    let weft = YarnCard { stretch_stiffness: 30.0, bending_stiffness: 3e-9, ..warp.clone() };
+    [warp, weft]
+}
+
+pub(super) fn weave_of(draft: &Draft) -> (Network, Yarns, WovenCard) {
+    let [warp, weft] = threads();
+    let geometry = peirce::geometry(draft, [&warp, &weft], SPACING).unwrap();
+    let card = WovenCard::new(&warp, &weft, &geometry);
+    (weave::tile(draft, SPACING).unwrap(), Yarns::new(warp, [weft]), card)
+}
+
+fn at_sett(draft: &Draft) -> TileReference {
+    let (network, yarns, card) = weave_of(draft);
+    reference(&network, &yarns, &card).unwrap()
+}
+
+fn reference(network: &Network, yarns: &Yarns, card: &WovenCard) -> Result<TileReference, StretchError> {
+    let settings = TileSettings { tolerance: 2e-9, ..TileSettings::of(card) };
+    TileReference::new(network, yarns, card, &settings, relax_tile(network, yarns, card, &settings))
+}
+
+/// Plain weave, twill, satin, and a warp rib of one end.
+fn drafts() -> [Draft; 4] {
+    let rib = Draft::new(vec![vec![true], vec![false], vec![false]]).unwrap();
+    [Draft::plain(), Draft::twill(2, 1).unwrap(), Draft::satin(5, 2).unwrap(), rib]
+}
+
+/// Energy by area of threads that stay straight and cross where they are, at a stretch along an angle and a compression across.
+fn even(card: &WovenCard, angle: f64, stretch: f64, compression: f64) -> f64 {
+    let (sine, cosine) = angle.sin_cos();
+    let (along, across) = (1.0 + stretch, 1.0 - compression);
+    let mixed = (along - across) * sine * cosine;
+    let weft = [along * cosine * cosine + across * sine * sine, mixed];
+    let warp = [mixed, along * sine * sine + across * cosine * cosine];
+    let lengths = [warp, weft].map(|[x, y]: [f64; 2]| x.hypot(y));
+    let between = (warp[0] * weft[0] + warp[1] * weft[1]) / (lengths[0] * lengths[1]);
+    let sheared = between.asin().abs();
+    let over = (sheared - card.shear_jamming_angle).max(0.0);
+    let pitch = 0.5 * (SPACING[0] + SPACING[1]);
+    let shear = 0.5 * card.shear_stiffness * pitch * (sheared.powi(2) + 200.0 * over.powi(3));
+    let yarns = threads().map(|yarn| yarn.stretch_stiffness);
+    let stretch = (0..2).map(|k| 0.5 * yarns[k] * (lengths[k] - 1.0).powi(2) / SPACING[k]).sum::<f64>();
+    stretch + shear / (SPACING[0] * SPACING[1])
+}
+
+/// Stress and the compression of least energy, by differences and bisection.
+fn known(card: &WovenCard, angle: f64, stretch: f64) -> [f64; 2] {
+    let h = 1e-6;
+    let across = |c: f64| even(card, angle, stretch, c + h) - even(card, angle, stretch, c - h);
+    let (mut low, mut high) = (-0.3, 0.8);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if across(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    let stress = (even(card, angle, stretch + h, low) - even(card, angle, stretch - h, low)) / (2.0 * h);
+    [stress, low]
+}
+
+#[test]
+fn a_weave_is_at_rest_at_its_sett() {
+    for draft in drafts() {
+        let found = at_sett(&draft);
+        assert_eq!((found.rest().iterations, found.rest().energy < 1e-20), (0, true), "{:?}", found.rest());
+        assert!((found.rest().wale_spacing / SPACING[0] - 1.0).abs() < 1e-12);
+        assert!((found.rest().course_spacing / SPACING[1] - 1.0).abs() < 1e-12);
+        assert_eq!(found.size_slopes(), Some([[0.0; P]; 2]));
+    }
+}
+
+#[test]
+fn a_weave_of_which_only_some_crossings_are_jammed_is_not_at_rest_at_its_sett() {
+    // Interlacings that ask for more yarn than there is: of a plain weave all do, of a basket every other.
+    for (draft, rests) in [(Draft::plain(), true), (Draft::basket(2, 2).unwrap(), false)] {
+        let (network, yarns, mut card) = weave_of(&draft);
+        card.interlacing_spacing = [1.2 * SPACING[1], 1.2 * SPACING[0]];
+        let found = reference(&network, &yarns, &card);
+        assert_eq!(found.is_ok(), rests, "{:?}", found.err());
+        assert!(rests || matches!(found, Err(StretchError::NotRelaxed { residual }) if residual > 1.0));
+    }
+}
+
+#[test]
+fn along_its_threads_a_weave_bears_what_they_do_and_nothing_across() {
+    let [warp, weft] = threads().map(|yarn| yarn.stretch_stiffness);
+    for draft in drafts() {
+        let reference = at_sett(&draft);
+        for (angle, by_width) in [(0.0, weft / SPACING[1]), (FRAC_PI_2, warp / SPACING[0])] {
+            let (_, held) = pulled(&reference, angle, 0.1, Some(0.0));
+            assert!((held.stress / (0.1 * by_width) - 1.0).abs() < 1e-9, "{held:?}");
+            assert!(held.stress_across.abs() < 1e-9 * held.stress, "{held:?}");
+            let (_, free) = pulled(&reference, angle, 0.1, None);
+            assert!((free.stress / held.stress - 1.0).abs() < 1e-9 && free.compression.abs() < 1e-9, "{free:?}");
+        }
+    }
+}
+
+#[test]
+fn on_the_bias_a_weave_shears_at_first_and_locks_at_its_jamming_angle() {
+    let (network, yarns, card) = weave_of(&Draft::twill(2, 1).unwrap());
+    let reference = reference(&network, &yarns, &card).unwrap();
+    // With u = s − c threads stretch by u/2, with v = s + c they shear by v: W = ½ K (u/2)² + ½ G v² is least across at σ = 2 G v.
+    let [warp, weft] = threads().map(|yarn| yarn.stretch_stiffness);
+    let stretch = warp / SPACING[0] + weft / SPACING[1];
+    let shear = card.shear_stiffness * 0.5 * (SPACING[0] + SPACING[1]) / (SPACING[0] * SPACING[1]);
+    let (_, small) = pulled(&reference, FRAC_PI_4, 1e-4, None);
+    let wanted = 4.0 * shear * 1e-4 / (1.0 + 4.0 * shear / stretch);
+    assert!((small.stress / wanted - 1.0).abs() < 1e-3, "{small:?} {wanted}");
+    // Threads of constant length that have turned by the jamming angle.
+    let locked = 2f64.sqrt() * (0.5 * (FRAC_PI_2 - card.shear_jamming_angle)).cos() - 1.0;
+    let at = |part: f64| pulled(&reference, FRAC_PI_4, part * locked, None).1;
+    let slope = |part: f64| (at(part + 0.01).stress - at(part - 0.01).stress) / (0.02 * locked);
+    let [before, behind] = [slope(0.9), slope(1.3)];
+    assert!(behind > 20.0 * before, "{before} {behind} at {locked}");
+    // From there on it is the threads that stretch, as stiff as those of a fabric that cannot shear: K/4 and more.
+    let [free, held] = [at(1.3), at(0.98)];
+    let lengths = |found: StretchedEquilibrium| (1.0 + found.stretch).hypot(1.0 - found.compression) / 2f64.sqrt();
+    assert!(lengths(held) - 1.0 < 1e-2 && lengths(free) - 1.0 > 5e-2, "{} {}", lengths(held), lengths(free));
+}
+
+#[test]
+fn every_crossing_moves_as_the_plane_does() {
+    for draft in drafts() {
+        let (network, yarns, card) = weave_of(&draft);
+        let reference = reference(&network, &yarns, &card).unwrap();
+        for angle in [0.0, 0.3, FRAC_PI_4, 1.0, FRAC_PI_2] {
+            for stretch in [0.02, 0.15, 0.5] {
+                let (_, found) = pulled(&reference, angle, stretch, None);
+                let [stress, compression] = known(&card, angle, stretch);
+                assert!((found.stress / stress - 1.0).abs() < 1e-5, "{angle} {stretch}: {found:?} {stress}");
+                assert!((found.compression - compression).abs() < 1e-6, "{angle} {stretch}: {found:?} {compression}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_doubled_tile_of_a_weave_bears_the_same() {
+    let twill = Draft::twill(2, 1).unwrap();
+    let one = at_sett(&twill);
+    let more = at_sett(&twill.repeat(6, 3).unwrap());
+    assert!((more.area() / one.area() - 2.0).abs() < 1e-12);
+    for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
+        let [(_, a), (_, b)] = [&one, &more].map(|reference| pulled(reference, angle, 0.3, None));
+        assert!((b.stress / a.stress - 1.0).abs() < 1e-9 && (b.compression - a.compression).abs() < 1e-9, "{a:?} {b:?}");
+    }
+}
