@@ -295,3 +295,129 @@ impl TileStiffness {
         matches!(self, Self::Spacing | Self::WeftStretch | Self::WeftBending)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::tile_system::TileSystem;
+    use crate::pattern::weave::{self, Draft};
+    use crate::pattern::{Chart, Stitch, knit};
+    use crate::scene::Scene;
+
+    const WEAVE: &str = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
+        bending_stiffness = 1e-9\n[fabric.weave]\npattern = \"twill 2/1\"\nends = 6\npicks = 6\nend_spacing = \"0.5 mm\"\n\
+        pick_spacing = \"0.4 mm\"\n";
+
+    /// Unknowns of a fabric far from rest: displaced in the plane and out of it, and its yarns slid.
+    fn displaced(system: &TileSystem, network: &Network, length: f64) -> Vec<f64> {
+        let mut random = 7u64;
+        let mut next = move || {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        let mut world = system.coordinates.initial(network);
+        let n = world.len();
+        world[..n - 2].iter_mut().for_each(|x| *x += 0.3 * length * next());
+        world[n - 2..].iter_mut().for_each(|period| *period *= 1.0 + 0.05 * next());
+        system.coordinates.unknowns(world)
+    }
+
+    /// At a state far from rest the forces of each stiffness at one are the derivatives of all forces by it.
+    fn check(network: &Network, yarns: &Yarns, card: &FabricCard, moved: f64) {
+        let (bending, length) = bending_and_length(network, yarns, card);
+        let relative_bed = 3.0 / length.powi(3);
+        let settings = crate::dynamics::tile_equilibrium::TileSettings { bed: 3.0, ..Default::default() };
+        assert!(bending > 0.0);
+        let system = TileSystem::of(network, yarns, card, &settings);
+        let unknowns = displaced(&system, network, moved);
+        let along = displaced(&system, network, length);
+        let units = UnitEnergies::new(network, yarns, card, relative_bed, TileCoordinates::new(network));
+        let work = units.work(&unknowns, [&along]).map(|[work]| work);
+        let stiffness = TileStiffness::of(network, yarns, card);
+        let total = |stiffness: [f64; TileStiffness::COUNT]| {
+            let (yarns, card) = TileStiffness::with(network, yarns, card, stiffness);
+            let mut system = TileSystem::of(network, &yarns, &card, &settings);
+            let motion = system.coordinates.moved(&along);
+            system.first_along(&unknowns, &motion)
+        };
+        let whole = total(stiffness);
+        let sum: f64 = work.iter().zip(stiffness).map(|(work, p)| work * p).sum();
+        assert!((sum / whole - 1.0).abs() < 1e-9, "{sum} {whole}");
+        for (k, kind) in TileStiffness::all(card).into_iter().enumerate() {
+            let mut more = stiffness;
+            more[k] *= 2.0;
+            let difference = total(more) - whole;
+            let own = work[k] * stiffness[k];
+            assert!(kind.is_there(network, card) == (own != 0.0), "{}: {own}", kind.name());
+            let largest = work.iter().zip(stiffness).fold(0.0f64, |most, (work, p)| most.max((work * p).abs()));
+            assert!((difference - own).abs() < 1e-9 * largest, "{}: {difference} {own}", kind.name());
+        }
+    }
+
+    #[test]
+    fn forces_are_the_sum_of_those_of_all_stiffnesses() {
+        for contacts in ["point", "thick"] {
+            let text = format!(
+                "schema = 1\n[fabric]\nloop_length = \"10 mm\"\ncontacts = \"{contacts}\"\n\
+                 [fabric.chart]\npattern = \"stockinette\"\ncolumns = 1\nrows = 1\n"
+            );
+            let scene = Scene::from_text(&text, "scene.toml").unwrap();
+            let chart = Chart::new(vec![vec![Stitch::Knit]]).unwrap();
+            let network = knit::tile(&chart, scene.fabric.knit().unwrap()).unwrap();
+            check(&network, &scene.yarns, &scene.fabric, 0.02 * scene.fabric.unit_length());
+        }
+        for threads in ["", "warp = [\"a\", \"b\"]\nweft = [\"c\", \"a\", \"d\"]\n", "warp = [\"a\"]\nweft = [\"a\"]\n"]
+        {
+            let scene = Scene::from_text(&format!("{WEAVE}{threads}"), "scene.toml").unwrap();
+            let woven = scene.structure.woven().unwrap();
+            let network = weave::tile(&woven.draft, scene.fabric.woven().unwrap().spacing).unwrap();
+            check(&network, &scene.yarns, &scene.fabric, 0.9 * scene.fabric.unit_length());
+        }
+    }
+
+    #[test]
+    fn yarns_keep_their_proportion_within_a_system() {
+        let draft = Draft::plain();
+        let scene = Scene::from_text(WEAVE, "scene.toml").unwrap();
+        let spacing = scene.fabric.woven().unwrap().spacing;
+        let soft = scene.yarns.first().clone();
+        let scaled = |factor: f64| YarnCard {
+            stretch_stiffness: factor * soft.stretch_stiffness,
+            bending_stiffness: factor * factor * soft.bending_stiffness,
+            ..soft.clone()
+        };
+        let yarns = Yarns::new(scaled(1.0), [scaled(2.0), scaled(3.0), scaled(4.0)]);
+        let network = |warp: [u8; 2], weft: [u8; 2]| {
+            let mut draft = draft.clone();
+            draft.warp.iter_mut().zip(warp).for_each(|(thread, kind)| thread.yarn = kind);
+            draft.weft.iter_mut().zip(weft).for_each(|(thread, kind)| thread.yarn = kind);
+            weave::tile(&draft, spacing).unwrap()
+        };
+        let factors = |yarns: &Yarns| {
+            let stretch = yarns.cards().iter().map(|yarn| yarn.stretch_stiffness / soft.stretch_stiffness);
+            let bending = yarns.cards().iter().map(|yarn| yarn.bending_stiffness / soft.bending_stiffness);
+            [stretch.collect::<Vec<_>>(), bending.collect()]
+        };
+        // What is in both is of the warp; what is in none stays.
+        let both = network([1, 0], [0, 2]);
+        let given = TileStiffness::of(&both, &yarns, &scene.fabric);
+        assert_eq!(given[0] / soft.stretch_stiffness, 2.0);
+        assert_eq!((given[1] / soft.stretch_stiffness, given[4] / soft.bending_stiffness), (3.0, 9.0));
+        let changed = [10.0 * given[0], 100.0 * given[1], 7.0, 1000.0 * given[3], given[4], 8.0];
+        let (found, card) = TileStiffness::with(&both, &yarns, &scene.fabric, changed);
+        for (found, wanted) in factors(&found).iter().zip([[10.0, 20.0, 300.0, 4.0], [1000.0, 4000.0, 9.0, 16.0]]) {
+            assert!(found.iter().zip(wanted).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{found:?}");
+        }
+        assert_eq!(TileStiffness::of(&both, &found, &card)[2..6], changed[2..6]);
+        // One yarn for all has no stiffness of the weft; a number without a card gets one where warp and weft differ.
+        let one = network([0, 0], [0, 0]);
+        assert_eq!(TileStiffness::of(&one, &yarns, &scene.fabric)[1], 0.0);
+        assert!(!TileStiffness::WeftStretch.is_there(&one, &scene.fabric));
+        let apart = network([0, 0], [1, 1]);
+        let (found, _) = TileStiffness::with(&apart, &(&soft).into(), &scene.fabric, changed);
+        assert_eq!(found.of(1).stretch_stiffness, changed[1]);
+        assert_eq!(found.of(0).stretch_stiffness, changed[0]);
+    }
+}

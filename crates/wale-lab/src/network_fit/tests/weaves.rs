@@ -9,6 +9,9 @@ use wale::model::{Network, WovenCard, YarnCard, Yarns};
 use wale::pattern::weave::{self, Draft, peirce};
 
 use super::{pulled, yarn};
+use crate::network_fit::{NetworkFitSettings, NetworkProblem, NetworkPullSettings, fit_network};
+use crate::shell::{StretchCurve, StretchPoint};
+use crate::yarn_fit::{Answer, Target};
 
 const P: usize = TileStiffness::COUNT;
 /// Distance of ends, and of picks \[m\].
@@ -160,6 +163,108 @@ fn a_doubled_tile_of_a_weave_bears_the_same() {
     assert!((more.area() / one.area() - 2.0).abs() < 1e-12);
     for angle in [0.0, FRAC_PI_4, FRAC_PI_2] {
         let [(_, a), (_, b)] = [&one, &more].map(|reference| pulled(reference, angle, 0.3, None));
-        assert!((b.stress / a.stress - 1.0).abs() < 1e-9 && (b.compression - a.compression).abs() < 1e-9, "{a:?} {b:?}");
+        assert!(
+            (b.stress / a.stress - 1.0).abs() < 1e-9 && (b.compression - a.compression).abs() < 1e-9,
+            "{a:?} {b:?}"
+        );
+    }
+}
+
+/// The fabric with one stiffness changed by a factor, its tile at rest where it was.
+fn changed(reference: &TileReference, draft: &Draft, k: usize, factor: f64) -> TileReference {
+    let (network, yarns, card) = weave_of(draft);
+    let mut stiffness = TileStiffness::of(&network, &yarns, &(&card).into());
+    stiffness[k] *= factor;
+    let (yarns, other) = TileStiffness::with(&network, &yarns, &(&card).into(), stiffness);
+    let settings = TileSettings { tolerance: 2e-9, ..TileSettings::of(&card) };
+    TileReference::new(&network, &yarns, &other, &settings, reference.rest().clone()).unwrap()
+}
+
+/// Checks the slopes of stress and compression against differences; gives the logarithmic slopes of the stress over the stress.
+fn check_slopes(reference: &TileReference, draft: &Draft, angle: f64, stretch: f64, across: Option<f64>) -> [f64; P] {
+    let (mut tile, found) = pulled(reference, angle, stretch, across);
+    let slopes = tile.slopes(reference.size_slopes().as_ref()).unwrap();
+    assert!(slopes.stable);
+    let stiffness = reference.stiffness();
+    std::array::from_fn(|k| {
+        let h = 1e-3;
+        let run = |factor: f64| pulled(&changed(reference, draft, k, factor), angle, stretch, across).1;
+        let [low, high] = [(-h).exp(), h.exp()].map(run);
+        let [by_stress, by_compression] = [slopes.stress[k], slopes.compression[k]].map(|slope| slope * stiffness[k]);
+        let [stress, compression] =
+            [high.stress - low.stress, high.compression - low.compression].map(|d| d / (2.0 * h));
+        let least = 1e-6 * found.stress.abs();
+        assert!((by_stress - stress).abs() < least, "{k} {angle} {stretch}: {by_stress} {stress} of {found:?}");
+        assert!((by_compression - compression).abs() < 1e-6, "{k} {angle} {stretch}: {by_compression} {compression}");
+        by_stress / found.stress
+    })
+}
+
+#[test]
+fn slopes_of_a_weave_are_differences() {
+    let draft = Draft::twill(2, 1).unwrap();
+    let reference = at_sett(&draft);
+    let (network, yarns, card) = weave_of(&draft);
+    let all = TileStiffness::all(&(&card).into());
+    assert_eq!(reference.stiffness(), TileStiffness::of(&network, &yarns, &(&card).into()));
+    let at = |kind: TileStiffness| all.iter().position(|&one| one == kind).unwrap();
+    let [warp, weft, shear] = [TileStiffness::WarpStretch, TileStiffness::WeftStretch, TileStiffness::Shear].map(at);
+    // Straight threads say themselves what they bear.
+    let along = check_slopes(&reference, &draft, 0.0, 0.1, None);
+    assert!((along[weft] - 1.0).abs() < 1e-9 && along[warp].abs() < 1e-9, "{along:?}");
+    let across = check_slopes(&reference, &draft, FRAC_PI_2, 0.1, None);
+    assert!((across[warp] - 1.0).abs() < 1e-9 && across[weft].abs() < 1e-9, "{across:?}");
+    // On the bias shear does at first, and all three where it is jammed.
+    let bias = check_slopes(&reference, &draft, FRAC_PI_4, 0.1, None);
+    assert!(bias[shear] > 0.9, "{bias:?}");
+    let locked = check_slopes(&reference, &draft, FRAC_PI_4, 0.45, None);
+    assert!([warp, weft, shear].iter().all(|&k| locked[k] > 0.05), "{locked:?}");
+    // The energy is linear in all stiffnesses.
+    for slopes in [along, across, bias, locked] {
+        assert!((slopes.iter().sum::<f64>() - 1.0).abs() < 1e-6, "{slopes:?}");
+    }
+}
+
+/// What a fabric does that is pulled along weft, bias and warp, with stiffnesses that are factors of those it has.
+fn curves(draft: &Draft, factors: [f64; P]) -> Vec<Target> {
+    let (network, yarns, card) = weave_of(draft);
+    let zero = [(0.0, 0.1), (FRAC_PI_4, 0.42), (FRAC_PI_2, 0.08)].map(|(angle, end)| {
+        let points = (1..=8).map(|k| [end * f64::from(k) / 8.0, f64::from(k), 0.0]).map(StretchPoint::from).collect();
+        Target::new(&StretchCurve { angle, points }, true, 1.0)
+    });
+    let (tile, pull) = (TileSettings::of(&card), NetworkPullSettings::default());
+    let problem = NetworkProblem::new(&network, &yarns, &card, zero.to_vec(), tile, pull, 1).unwrap();
+    let given = problem.stiffness();
+    let found = problem.evaluate(std::array::from_fn(|k| given[k] * factors[k]), false).unwrap();
+    let target = |(target, answers): (&Target, Vec<Answer<P>>)| {
+        let points: Vec<StretchPoint> = answers.iter().map(|answer| answer.point).collect();
+        let most = points[points.len() - 1].force;
+        Target::new(&StretchCurve { angle: target.angle, points }, true, 0.4 * most)
+    };
+    zero.iter().zip(found.answers).map(target).collect()
+}
+
+#[test]
+fn curves_of_known_stiffnesses_of_a_weave_are_met() {
+    for draft in [Draft::plain(), Draft::twill(2, 1).unwrap()] {
+        let truth = [0.6, 1.6, 2.0, 1.0, 1.0, 1.0];
+        let targets = curves(&draft, truth);
+        let (network, yarns, card) = weave_of(&draft);
+        let starts = vec![[1.0; P], [4.0, 0.2, 0.1, 1.0, 1.0, 1.0], [0.1, 5.0, 10.0, 1.0, 1.0, 1.0]];
+        for start in starts {
+            let settings = NetworkFitSettings { starts: vec![start], ..NetworkFitSettings::default() };
+            let fit = fit_network(&network, &yarns, &card, &targets, &settings).unwrap();
+            assert!(fit.start_error.unwrap().comfort > 0.2, "{:?}", fit.start_error);
+            let error = fit.error;
+            assert!(error.comfort < 1e-3 && error.full < 1e-3 && error.compression < 1e-3, "{error:?} from {start:?}");
+            let given = TileStiffness::of(&network, &yarns, &(&card).into());
+            for k in 0..3 {
+                let found = fit.stiffness[k] / given[k] / truth[k];
+                assert!((found - 1.0).abs() < 1e-2 && fit.within[k] < 1.1, "{}: {found}", fit.kinds[k].name());
+            }
+            // Nothing bends and nothing slides where all moves as the plane does.
+            assert_eq!(fit.undetermined, ["warp bending", "weft bending", "spacing"]);
+            assert_eq!(fit.stiffness[3..], given[3..]);
+        }
     }
 }

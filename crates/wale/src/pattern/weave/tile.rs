@@ -66,7 +66,8 @@ mod tests {
                     for step in [-1, 1] {
                         let next = network.neighbour(yarn, pass, step).unwrap();
                         let image = width * f64::from(next.image[0]) + height * f64::from(next.image[1]);
-                        let [here, there] = [pass, next.pass].map(|p| network.position[network.pass_node[p.index()].index()]);
+                        let [here, there] =
+                            [pass, next.pass].map(|p| network.position[network.pass_node[p.index()].index()]);
                         let arc = network.arc_length[next.pass.index()] - network.arc_length[pass.index()]
                             + f64::from(next.turns) * network.length_of(yarn);
                         let way = there + image - here;
@@ -87,7 +88,10 @@ mod tests {
         for (at, crossing) in network.crossings.iter().enumerate() {
             assert_eq!(crossing.node, NodeId::new(at));
             let front = if draft.warp_up(at % 3, at / 3) { crossing.warp } else { crossing.weft };
-            assert_eq!(network.stack(crossing.node), [front, if front == crossing.warp { crossing.weft } else { crossing.warp }]);
+            assert_eq!(
+                network.stack(crossing.node),
+                [front, if front == crossing.warp { crossing.weft } else { crossing.warp }]
+            );
             assert_eq!(network.yarn_role[yarn_of[crossing.warp.index()].index()], YarnRole::Warp);
             assert_eq!(network.yarn_role[yarn_of[crossing.weft.index()].index()], YarnRole::Weft);
         }
