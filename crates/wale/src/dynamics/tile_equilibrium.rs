@@ -78,7 +78,7 @@ pub struct TileEquilibrium {
     pub energy: f64,
     /// Iterations used.
     pub iterations: usize,
-    /// Largest component of the gradient left, in `k_b/ℓ²` \[–\]; of a weave by its periods too.
+    /// Largest component of the gradient left, in `k_b/ℓ²` \[–\].
     pub residual: f64,
     /// Whether the residual reached the tolerance.
     pub converged: bool,
@@ -89,9 +89,8 @@ pub struct TileEquilibrium {
 /// Unknowns are all positions, all sliding coordinates and both periods; one node's place in the plane and one sliding
 /// coordinate of each yarn are held, which fixes the rigid motions and nothing else.
 ///
-/// A weave keeps the periods of its sett: nothing in it asks for a size. Each of its threads is held at one place across itself, where
-/// it would slide along those that it crosses. It is at rest if nothing that is held pulls either, as where yarn is jammed between
-/// some of its crossings.
+/// A weave keeps the periods of its sett, and its yarns do not slide at their crossings, where friction holds them. It is at rest as it
+/// is laid out: straight, and nowhere sheared.
 #[must_use]
 pub fn relax_tile(
     network: &Network,
@@ -150,10 +149,7 @@ pub fn relax_tile_from(
     let trust = Trust::new(RULE, FIRST_SHIFT, 1.0);
     let mut descent = Descent::new(&mut system, unknowns, force, length, *settings, trust);
     descent.run();
-    let Descent { unknowns, energy, iterations, mut residual, .. } = descent;
-    if card.woven().is_some() {
-        residual = residual.max(system.largest_force_of_all(&unknowns) / force);
-    }
+    let Descent { unknowns, energy, iterations, residual, .. } = descent;
     let n = system.coordinates.own().len();
     let mut coordinates = Vec::new();
     system.coordinates.place(&unknowns, &mut coordinates);

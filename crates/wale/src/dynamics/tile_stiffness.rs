@@ -306,7 +306,7 @@ mod tests {
 
     const WEAVE: &str = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
         bending_stiffness = 1e-9\n[fabric.weave]\npattern = \"twill 2/1\"\nends = 6\npicks = 6\nend_spacing = \"0.5 mm\"\n\
-        pick_spacing = \"0.4 mm\"\n";
+        pick_spacing = \"0.4 mm\"\ninterlacing_spacing = [\"0.35 mm\", \"0.45 mm\"]\n";
 
     /// Unknowns of a fabric far from rest: displaced in the plane and out of it, and its yarns slid.
     fn displaced(system: &TileSystem, network: &Network, length: f64) -> Vec<f64> {

@@ -66,8 +66,7 @@ pub struct StretchedEquilibrium {
 ///
 /// `F = U diag(1 + s, 1 − c) Uᵀ` [Sperl2022, section 7.1]: a place `X` of the relaxed tile goes to `F X + ũ`, an image of it `k`
 /// periods away to `F (X + kP) + ũ`. Unknowns are `ũ`, heights, sliding coordinates, and the compression if it is free; rigid motion
-/// and one sliding coordinate of each yarn are held, of a weave one place of each thread across itself too, and the bed lies under the
-/// tile, as where it was relaxed.
+/// and one sliding coordinate of each yarn are held, of a weave all of them, and the bed lies under the tile, as where it was relaxed.
 ///
 /// Differs from the paper: there COBYLA looks for the compression of least energy and solves for equilibrium at every try; here it is
 /// one more unknown of Newton's method. Test: `stress_is_the_central_difference_of_the_energy`.
