@@ -127,6 +127,33 @@ fn a_tile_is_tested_and_says_what_it_cannot_do() {
 }
 
 #[test]
+fn a_weave_is_tested_by_its_contacts() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("weave.toml");
+    let text = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
+        bending_stiffness = 1e-9\n[yarns.weft]\nstretch_stiffness = \"4 N\"\n[fabric.weave]\npattern = \"twill 2/1\"\n\
+        ends = 6\npicks = 6\nend_spacing = \"0.5 mm\"\npick_spacing = \"0.4 mm\"\n";
+    fs::write(&scene, text).unwrap();
+    let scene = scene.to_str().unwrap();
+    let strip = |arguments: &[&str]| {
+        let output =
+            wale(&[&["lab", "strip", scene, "--by", "contacts", "--to", "2 %", "--force"], arguments].concat());
+        assert!(output.status.success(), "{}", error(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let found: serde_json::Value = serde_json::from_str(&strip(&["--json"])).unwrap();
+    let force = |at: usize| found["results"][at]["line_force_N_per_m"].as_f64().unwrap();
+    // 4 N every 0.4 mm along the weft, 10 N every 0.5 mm along the warp; on the bias it shears.
+    assert!((force(0) / (0.02 * 1e4) - 1.0).abs() < 1e-9 && (force(2) / (0.02 * 2e4) - 1.0).abs() < 1e-9, "{found}");
+    assert!(force(1) < 0.05 * force(0), "{found}");
+    let remark = "may not shear";
+    assert!(!strip(&[]).contains(remark) && strip(&["--direction", "20 deg"]).contains(remark));
+    let output = wale(&["lab", "relaxation", scene, "--by", "contacts"]);
+    assert_eq!(output.status.code(), Some(3));
+    assert!(error(&output).contains("at rest at the sett"), "{}", error(&output));
+}
+
+#[test]
 fn a_test_that_is_answered_elsewhere_writes_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
     let (one, other) = (folder.path().join("one.toml"), folder.path().join("other.toml"));

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     settings.starts = (0..8).map(start).collect();
     let begin = Instant::now();
     let fit = fit_network(&network, &scene.yarns, card, &targets, &settings)?;
-    let given = TileStiffness::of(&scene.yarns, card);
+    let given = TileStiffness::of(&network, &scene.yarns, &scene.fabric);
     println!("{contacts} contacts, loop length {loop_length} mm, fitted in {:.1} s", begin.elapsed().as_secs_f64());
     print(&fit, &targets, given);
     Ok(())
@@ -43,9 +43,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn print(fit: &NetworkFit, targets: &[Target], given: [f64; TileStiffness::COUNT]) {
     println!("{:>9} {:>11} {:>11} {:>9} {:>9}", "stiffness", "given", "fitted", "factor", "within");
-    for (k, name) in TileStiffness::NAMES.into_iter().enumerate().filter(|(k, _)| given[*k] > 0.0) {
+    for (k, kind) in fit.kinds.into_iter().enumerate().filter(|(k, _)| given[*k] > 0.0) {
         let (fitted, within) = (fit.stiffness[k], fit.within[k]);
-        println!("{name:>9} {:>11.3e} {fitted:>11.3e} {:>9.3} {within:>9.2}", given[k], fitted / given[k]);
+        println!("{:>9} {:>11.3e} {fitted:>11.3e} {:>9.3} {within:>9.2}", kind.name(), given[k], fitted / given[k]);
     }
     println!("not determined: {:?}; at a bound: {:?}", fit.undetermined, fit.at_bound);
     println!(

@@ -6,7 +6,7 @@ use thiserror::Error;
 use wale::dynamics::stretched_tile::StretchError;
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings};
 use wale::dynamics::tile_stiffness::TileStiffness;
-use wale::model::{KnitCard, Network, Yarns};
+use wale::model::{FabricCard, Network, Yarns};
 
 use super::problem::NetworkProblem;
 use super::pull::NetworkPullSettings;
@@ -82,8 +82,10 @@ pub struct NetworkFit {
     /// Yarns and card with the stiffnesses that were found.
     pub yarns: Yarns,
     /// The card.
-    pub card: KnitCard,
-    /// The stiffnesses in SI units, in the order of [`TileStiffness::ALL`].
+    pub card: FabricCard,
+    /// What was fitted, in the order of arrays.
+    pub kinds: [TileStiffness; P],
+    /// The stiffnesses in SI units, in the order of `kinds`; zero where the fabric has none.
     pub stiffness: [f64; P],
     /// Factor within which each is known with 95 % confidence; one where it is held, infinite where the curves do not say.
     pub within: [f64; P],
@@ -105,34 +107,36 @@ pub struct NetworkFit {
 
 /// Fits the stiffnesses of a tile's yarns and card to uniform stretches without stress across.
 ///
-/// Lengths and angles of the card stay as they are; the relaxed tile, from which stretch is measured, follows the stiffnesses.
+/// Lengths and angles of the card stay as they are; the relaxed tile of a knit, from which stretch is measured, follows the stiffnesses,
+/// that of a weave keeps its sett.
 ///
 /// # Errors
 /// [`NetworkFitError`].
 pub fn fit_network(
     network: &Network,
     yarns: impl Into<Yarns>,
-    card: &KnitCard,
+    card: impl Into<FabricCard>,
     targets: &[Target],
     settings: &NetworkFitSettings,
 ) -> Result<NetworkFit, NetworkFitError> {
-    let yarns = yarns.into();
+    let (yarns, card) = (yarns.into(), card.into());
     if targets.is_empty() || targets.iter().any(|target| target.points.is_empty()) {
         return Err(NetworkFitError::NoTarget);
     }
-    let given = TileStiffness::of(&yarns, card);
-    for (k, &value) in given.iter().enumerate() {
-        let none = k == TileStiffness::Legs as usize && card.thickness.is_none();
-        if !(none || value > 0.0 && value.is_finite()) {
-            return Err(NetworkFitError::Stiffness { what: TileStiffness::NAMES[k], value });
+    let given = TileStiffness::of(network, &yarns, &card);
+    let kinds = TileStiffness::all(&card);
+    for (k, (&value, kind)) in given.iter().zip(kinds).enumerate() {
+        let what = kind.name();
+        if !(!kind.is_there(network, &card) || value > 0.0 && value.is_finite()) {
+            return Err(NetworkFitError::Stiffness { what, value });
         }
         let ([low, high], starts) = (settings.bounds[k], settings.starts.iter().map(|start| start[k]));
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !positive(low) || !positive(high) || low > high || !starts.into_iter().all(positive) {
-            return Err(NetworkFitError::Bounds { what: TileStiffness::NAMES[k] });
+            return Err(NetworkFitError::Bounds { what });
         }
     }
-    let tile = settings.tile.unwrap_or_else(|| TileSettings::of(card));
+    let tile = settings.tile.unwrap_or_else(|| TileSettings::of(&card));
     let problem =
         NetworkProblem::new(network, yarns, card, targets.to_vec(), tile, settings.pull, settings.relaxations)?;
     let at = |logarithms: &[f64; P]| -> [f64; P] { std::array::from_fn(|k| given[k] * logarithms[k].exp()) };
@@ -151,7 +155,7 @@ pub fn fit_network(
     };
     let stiffness = at(&found.parameters);
     let best = problem.evaluate(stiffness, false).ok_or(NetworkFitError::NoStart)?;
-    let names = |indices: Vec<usize>| indices.into_iter().map(|k| TileStiffness::NAMES[k]).collect::<Vec<_>>();
+    let names = |indices: Vec<usize>| indices.into_iter().map(|k| kinds[k].name()).collect::<Vec<_>>();
     let at_bound = (0..P).filter(|&k| {
         bounds[k][0] < bounds[k][1] && bounds[k].iter().any(|bound| (found.parameters[k] - bound).abs() < 1e-6)
     });
@@ -159,6 +163,7 @@ pub fn fit_network(
     Ok(NetworkFit {
         yarns,
         card,
+        kinds,
         stiffness,
         within: found.uncertainty,
         error: errors(targets, &best.answers),

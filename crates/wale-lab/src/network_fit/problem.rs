@@ -1,10 +1,10 @@
-//! What a knit does with given stiffnesses: it is brought to rest, and pulled along every target.
+//! What a fabric does with given stiffnesses: it is brought to rest, and pulled along every target.
 
 use rayon::prelude::*;
 use wale::dynamics::stretched_tile::{StretchError, TileReference};
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from_starts, relax_tile_from};
 use wale::dynamics::tile_stiffness::TileStiffness;
-use wale::model::{KnitCard, Network, Yarns};
+use wale::model::{FabricCard, Network, Yarns};
 
 use super::pull::{NetworkPullSettings, pull_network};
 use crate::least_squares::Residuals;
@@ -17,7 +17,7 @@ const P: usize = TileStiffness::COUNT;
 pub struct NetworkProblem {
     network: Network,
     yarns: Yarns,
-    card: KnitCard,
+    card: FabricCard,
     targets: Vec<Target>,
     tile: TileSettings,
     pull: NetworkPullSettings,
@@ -42,28 +42,28 @@ impl NetworkProblem {
     pub fn new(
         network: &Network,
         yarns: impl Into<Yarns>,
-        card: &KnitCard,
+        card: impl Into<FabricCard>,
         targets: Vec<Target>,
         tile: TileSettings,
         pull: NetworkPullSettings,
         starts: usize,
     ) -> Result<Self, StretchError> {
-        let yarns = yarns.into();
-        let rest = relax_from_starts(network, &yarns, card, &tile, starts.max(1)).swap_remove(0);
-        TileReference::new(network, &yarns, card, &tile, rest.clone())?;
-        Ok(Self { network: network.clone(), yarns, card: card.clone(), targets, tile, pull, rest })
+        let (yarns, card) = (yarns.into(), card.into());
+        let rest = relax_from_starts(network, &yarns, &card, &tile, starts.max(1)).swap_remove(0);
+        TileReference::new(network, &yarns, &card, &tile, rest.clone())?;
+        Ok(Self { network: network.clone(), yarns, card, targets, tile, pull, rest })
     }
 
     /// The stiffnesses as they were given.
     #[must_use]
     pub fn stiffness(&self) -> [f64; P] {
-        TileStiffness::of(&self.yarns, &self.card)
+        TileStiffness::of(&self.network, &self.yarns, &self.card)
     }
 
     /// Yarns and card with other stiffnesses.
     #[must_use]
-    pub fn with(&self, stiffness: [f64; P]) -> (Yarns, KnitCard) {
-        TileStiffness::with(&self.yarns, &self.card, stiffness)
+    pub fn with(&self, stiffness: [f64; P]) -> (Yarns, FabricCard) {
+        TileStiffness::with(&self.network, &self.yarns, &self.card, stiffness)
     }
 
     /// What is to be met.

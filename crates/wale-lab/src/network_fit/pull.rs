@@ -36,7 +36,7 @@ pub struct NetworkPull {
 }
 
 impl NetworkPull {
-    /// A relaxed tile that has not been stretched yet, along a direction at an angle \[rad\] from the course.
+    /// A relaxed tile that has not been stretched yet, along a direction at an angle \[rad\] from the course, of a weave from the weft.
     ///
     /// # Errors
     /// [`StretchError`].
@@ -57,10 +57,11 @@ impl NetworkPull {
     }
 }
 
-/// Pulls a relaxed tile along a direction at an angle \[rad\] from the course to each of the rising stretches, without stress across.
+/// Pulls a relaxed tile along a direction at an angle \[rad\] from the course, of a weave from the weft, to each of the rising stretches, without stress
+/// across.
 ///
 /// With `size_slopes` ([`TileReference::size_slopes`]) the answers have derivatives by the stiffnesses in the order of
-/// [`TileStiffness::ALL`], to which that of the relaxed tile contributes; without they are zero.
+/// [`TileStiffness::all`], to which that of the relaxed tile contributes; without they are zero.
 ///
 /// # Errors
 /// [`StretchError`]; of the first stretch at which there is no equilibrium.

@@ -37,6 +37,9 @@ pub enum SwatchTestError {
     /// There is no chart.
     #[error("swatches are knitted from the chart of a scene, and there is none")]
     NoChart,
+    /// A weave whose shrinkage was asked for.
+    #[error("a weave is at rest at the sett that its scene gives it: nothing in its repeat shrinks")]
+    Sett,
     /// The chart cannot be repeated to the size.
     #[error(transparent)]
     Chart(#[from] ChartError),

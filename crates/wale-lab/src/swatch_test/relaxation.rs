@@ -33,6 +33,9 @@ impl Shrinkage {
 /// # Errors
 /// [`SwatchTestError`].
 pub fn shrinkage_of_tile(scene: &Scene) -> Result<Shrinkage, SwatchTestError> {
+    if scene.fabric.woven().is_some() {
+        return Err(SwatchTestError::Sett);
+    }
     let known = card(scene)?;
     Ok(Shrinkage { knitted: [known.wale_spacing, known.course_spacing], relaxed: relaxed_spacing(scene)? })
 }

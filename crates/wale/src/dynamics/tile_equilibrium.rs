@@ -1,13 +1,14 @@
-//! Equilibrium of a periodic tile with both periods unknown, by Newton's method.
+//! Equilibrium of a periodic tile by Newton's method: of a knit with both periods unknown, of a weave at its sett.
 
 use rayon::prelude::*;
 use wale_numerics::trust::Trust;
 
 use super::tile_descent::{Descent, FIRST_SHIFT, RULE};
+use super::tile_stiffness::bending_and_length;
 use super::tile_system::TileSystem;
 use crate::fabric::TileCoordinates;
 use crate::fabric::coordinates::BLOCK;
-use crate::model::{KnitCard, Network, Yarns};
+use crate::model::{FabricCard, Network, Yarns};
 
 /// How a tile is brought to rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,23 +33,29 @@ pub struct TileSettings {
 }
 
 impl TileSettings {
-    /// Those of a card: on a bed as its proportions were fitted with.
+    /// Those of a card: on a bed as its proportions were fitted with. A weave is straight and flat by itself: it has no bed, and
+    /// begins undisturbed.
     #[must_use]
-    pub fn of(card: &KnitCard) -> Self {
-        let bed = if card.thickness.is_some() { Self::THICK_BED } else { Self::POINT_BED };
-        Self { bed, ..Self::default() }
+    pub fn of(card: impl Into<FabricCard>) -> Self {
+        let (bed, noise) = match card.into() {
+            FabricCard::Knit(card) if card.thickness.is_some() => (Self::THICK_BED, Self::NOISE),
+            FabricCard::Knit(_) => (Self::POINT_BED, Self::NOISE),
+            FabricCard::Woven(_) => (0.0, 0.0),
+        };
+        Self { bed, noise, ..Self::default() }
     }
 
     /// Bed of fabrics whose yarns meet in one point, and of those whose yarns lie beside each other.
     const POINT_BED: f64 = 10.0;
     const THICK_BED: f64 = 20.0;
+    const NOISE: f64 = 0.01;
 }
 
 impl Default for TileSettings {
     fn default() -> Self {
         Self {
             bed: Self::POINT_BED,
-            noise: 0.01,
+            noise: Self::NOISE,
             relief: 0.0,
             shorten: false,
             seed: 1,
@@ -81,14 +88,18 @@ pub struct TileEquilibrium {
 ///
 /// Unknowns are all positions, all sliding coordinates and both periods; one node's place in the plane and one sliding
 /// coordinate of each yarn are held, which fixes the rigid motions and nothing else.
+///
+/// A weave keeps the periods of its sett, and its yarns do not slide at their crossings, where friction holds them. It is at rest as it
+/// is laid out: straight, and nowhere sheared.
 #[must_use]
 pub fn relax_tile(
     network: &Network,
     yarns: impl Into<Yarns>,
-    card: &KnitCard,
+    card: impl Into<FabricCard>,
     settings: &TileSettings,
 ) -> TileEquilibrium {
-    let start = disturbed(network, settings, card.loop_length);
+    let card = card.into();
+    let start = disturbed(network, settings, card.unit_length());
     relax_tile_from(network, yarns, card, settings, start)
 }
 
@@ -101,11 +112,11 @@ const DISTURBED: [(f64, f64); 4] = [(1.0, 0.0), (1.0, 0.25), (5.0, 0.0), (10.0, 
 pub fn relax_from_starts(
     network: &Network,
     yarns: impl Into<Yarns>,
-    card: &KnitCard,
+    card: impl Into<FabricCard>,
     settings: &TileSettings,
     starts: usize,
 ) -> Vec<TileEquilibrium> {
-    let yarns = yarns.into();
+    let (yarns, card) = (yarns.into(), &card.into());
     let run = |start: usize| {
         let (more, relief) = DISTURBED[start % DISTURBED.len()];
         let (seed, noise) = (settings.seed + start as u64, settings.noise * more);
@@ -125,14 +136,14 @@ pub fn relax_from_starts(
 pub fn relax_tile_from(
     network: &Network,
     yarns: impl Into<Yarns>,
-    card: &KnitCard,
+    card: impl Into<FabricCard>,
     settings: &TileSettings,
     start: Vec<f64>,
 ) -> TileEquilibrium {
-    let yarns = yarns.into();
-    let length = card.loop_length;
-    let force = yarns.first().bending_stiffness / (length * length);
-    let mut system = TileSystem::of(network, &yarns, card, settings);
+    let (yarns, card) = (yarns.into(), card.into());
+    let (bending, length) = bending_and_length(network, &yarns, &card);
+    let force = bending / (length * length);
+    let mut system = TileSystem::of(network, &yarns, &card, settings);
     assert_eq!(start.len(), system.coordinates.unknown_len());
     let unknowns = system.coordinates.unknowns(start);
     let trust = Trust::new(RULE, FIRST_SHIFT, 1.0);

@@ -74,7 +74,7 @@ fn system(
     settings: &TileSettings,
     at: &TileEquilibrium,
 ) -> (TileSystem, Vec<f64>) {
-    let system = TileSystem::of(network, yarns, card, settings);
+    let system = TileSystem::of(network, yarns, &card.into(), settings);
     let unknowns = system.coordinates.unknowns(at.coordinates.clone());
     (system, unknowns)
 }

@@ -9,11 +9,12 @@ use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
 use super::tile_equilibrium::TileSettings;
+use super::tile_stiffness::bending_and_length;
 use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, Dof, dof};
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
-use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
+use crate::model::{FabricCard, Network, PassId, YarnId, Yarns};
 
 /// Values of a block.
 const BLOCK_VALUES: usize = BLOCK * BLOCK;
@@ -42,38 +43,33 @@ pub(super) struct TileSystem {
 }
 
 impl TileSystem {
-    /// The system of a tile as it is brought to rest with these settings.
+    /// The system of a tile as it is brought to rest with these settings: a knit with periods that are unknown, a weave at its sett.
     ///
     /// # Panics
     /// If the tile is too large for memory.
-    pub fn of(network: &Network, yarns: &Yarns, card: &KnitCard, settings: &TileSettings) -> Self {
-        let stiffness = yarns.first().bending_stiffness / card.loop_length.powi(3);
-        Self::new(network, yarns, card, settings.bed * stiffness).expect("a tile fits in memory")
+    pub fn of(network: &Network, yarns: &Yarns, card: &FabricCard, settings: &TileSettings) -> Self {
+        let (bending, length) = bending_and_length(network, yarns, card);
+        let bed = settings.bed * (bending / length.powi(3));
+        let held = [card.woven().is_some(); 2];
+        Self::with(network, yarns, card, bed, TileCoordinates::new(network), held).expect("a tile fits in memory")
     }
 
-    /// `bed` \[N/m\] is the stiffness under every node.
-    ///
-    /// # Errors
-    /// If the system is too large.
-    pub fn new(network: &Network, yarns: &Yarns, card: &KnitCard, bed: f64) -> Result<Self, CholeskyError> {
-        Self::with(network, yarns, card, bed, TileCoordinates::new(network), [false; 2])
-    }
-
-    /// Over given coordinates, of which numbers of the plane may be held.
+    /// Over given coordinates, of which numbers of the plane may be held; `bed` \[N/m\] is the stiffness under every node.
     ///
     /// # Errors
     /// If the system is too large.
     pub fn with(
         network: &Network,
         yarns: &Yarns,
-        card: &KnitCard,
+        card: &FabricCard,
         bed: f64,
         mut coordinates: TileCoordinates,
         held: [bool; 2],
     ) -> Result<Self, CholeskyError> {
-        let mechanics = Mechanics::new(network, yarns, &card.into(), &mut coordinates);
+        let mechanics = Mechanics::new(network, yarns, card, &mut coordinates);
         let springs = self::bed(network, bed);
-        // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else.
+        // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else. At the crossings of a
+        // weave yarns do not slide: where nothing rubs, threads that are sheared gather in groups.
         let mut free = coordinates.own().free().to_vec();
         free[0] = false;
         free[1] = false;
@@ -81,6 +77,9 @@ impl TileSystem {
         for y in 0..network.yarn_count() {
             let first = PassId::new(network.yarn_passes(YarnId::new(y)).start);
             free[coordinates.own().slot(first)] = false;
+        }
+        for pass in network.crossings.iter().flat_map(|crossing| [crossing.warp, crossing.weft]) {
+            free[coordinates.own().slot(pass)] = false;
         }
         let own = |dof: Dof| coordinates.source(dof).of as usize;
         let mut pairs = Vec::new();
@@ -327,5 +326,50 @@ fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a 
 fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {
     for set in sets {
         set.stencils(&mut visit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::PlaneMap;
+    use crate::pattern::weave::{self, Draft};
+    use crate::scene::Scene;
+
+    #[test]
+    fn threads_that_are_sheared_would_gather_in_groups_if_nothing_rubbed() {
+        let text = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
+            bending_stiffness = 1e-9\n[fabric.weave]\npattern = \"plain\"\nends = 2\npicks = 2\nend_spacing = \"0.5 mm\"\n\
+            pick_spacing = \"0.5 mm\"\n";
+        let scene = Scene::from_text(text, "scene.toml").unwrap();
+        let (pitch, period) = (0.5e-3, 1e-3);
+        let network = weave::tile(&Draft::plain(), [pitch; 2]).unwrap();
+        // Sheared by 0.4 rad, its threads as long as they were: columns are periods.
+        let shear = 0.4f64;
+        let map =
+            PlaneMap { base: [[period, period * shear.sin()], [0.0, period * shear.cos()]], rates: [[[0.0; 2]; 2]; 2] };
+        let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / period, x.y / period]).collect();
+        let coordinates = TileCoordinates::with_plane(&network, &places, &map);
+        let mut system = TileSystem::with(&network, &scene.yarns, &scene.fabric, 0.0, coordinates, [true; 2]).unwrap();
+        let own = system.coordinates.own().clone();
+        // The second pick goes along the warp, which slides through it, and to its side.
+        let mut energy = |along: f64, aside: f64| {
+            let mut unknowns = vec![0.0; own.len() + 2];
+            for pass in 0..network.pass_count() {
+                unknowns[own.slot(PassId::new(pass))] = network.arc_length[pass];
+            }
+            for crossing in network.crossings.iter().filter(|crossing| crossing.node.index() >= 2) {
+                let place = BLOCK * crossing.node.index();
+                unknowns[place] = pitch * (along * shear.sin() - aside * shear.cos());
+                unknowns[place + 1] = pitch * (along * shear.cos() + aside * shear.sin());
+                unknowns[own.slot(crossing.warp)] += pitch * along;
+            }
+            system.energy(&unknowns)
+        };
+        let even = energy(0.0, 0.0);
+        assert!(even > 0.0 && (energy(0.3, 0.0) / even - 1.0).abs() < 1e-9, "a straight thread lies anywhere");
+        assert!(energy(0.0, 0.04) > even && energy(0.0, -0.04) > even);
+        let grouped = [-0.04, 0.04].map(|aside| energy(0.3, aside) / even - 1.0);
+        assert!(grouped.iter().any(|&change| change < -0.01), "{grouped:?}");
     }
 }

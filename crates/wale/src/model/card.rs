@@ -75,6 +75,15 @@ impl FabricCard {
         }
     }
 
+    /// Length by which what goes on in a tile is measured \[m\]: that of a loop, or the mean distance of a weave's threads.
+    #[must_use]
+    pub fn unit_length(&self) -> f64 {
+        match self {
+            Self::Knit(card) => card.loop_length,
+            Self::Woven(card) => 0.5 * (card.spacing[0] + card.spacing[1]),
+        }
+    }
+
     /// Width and height of a stitch or of a crossing in the layout \[m\].
     #[must_use]
     pub fn cell(&self) -> [f64; 2] {

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use serde_json::json;
-use wale::dynamics::tile_stiffness::TileStiffness;
 use wale::energy::{BendingStiffness, MembraneStiffness};
 use wale_lab::fabric_file::{FabricFile, direction_name};
 use wale_lab::network_fit::NetworkFit;
@@ -102,7 +101,7 @@ pub fn found_json(
             "open": yarn.open,
         })),
         "contacts": contacts.map(|contacts| json!({
-            "names": TileStiffness::NAMES,
+            "names": contacts.kinds.map(|kind| kind.name()),
             "stiffness_SI": contacts.stiffness,
             "within": factors(&contacts.within),
             "error": contacts.error,
@@ -157,14 +156,15 @@ pub fn lines(found: &ShellFit, yarn: Option<&YarnFit>, contacts: Option<&Network
     }
     if let Some(contacts) = contacts {
         lines.push(format!("contact model of scenes: {}", errors(&contacts.error)));
-        for (k, name) in TileStiffness::NAMES.into_iter().enumerate().filter(|(k, _)| contacts.stiffness[*k] > 0.0) {
+        for (k, kind) in contacts.kinds.into_iter().enumerate().filter(|(k, _)| contacts.stiffness[*k] > 0.0) {
+            let name = kind.name();
             let known = match contacts.within[k] {
                 _ if contacts.at_bound.contains(&name) => "at its bound".to_owned(),
                 within if within > 3.0 => "not determined".to_owned(),
                 within => format!("× or ÷ {within:.2}"),
             };
-            let (factor, unit) = if k == TileStiffness::Bending as usize { (1e9, "mN mm^2") } else { (1.0, "N") };
-            lines.push(format!("  {name:<9} {:12.5} {unit:<7} {known}", factor * contacts.stiffness[k]));
+            let (factor, unit) = if kind.is_bending() { (1e9, "mN mm^2") } else { (1.0, "N") };
+            lines.push(format!("  {name:<12} {:12.5} {unit:<7} {known}", factor * contacts.stiffness[k]));
         }
     }
     lines.extend(found.open.iter().map(|open| format!("  {open}")));

@@ -141,13 +141,13 @@ impl Task<'_> {
     }
 }
 
-/// The contact model of a fabric of which there is a chart; why there is none is left open, in words.
+/// The contact model of a fabric of which there is a chart or a draft; why there is none is left open, in words.
 pub fn fit_contacts(fabric: &FabricFile, shell: &mut ShellFit) -> Option<(Scene, NetworkFit)> {
     let Some(Structure::Scene(scene)) = &fabric.structure else { return None };
     let targets = uniform_targets(fabric, shell).ok()?;
     match fit_scene(scene, &targets) {
         Ok(found) => Some(found),
-        Err(SceneFitError::NoChart) => None,
+        Err(SceneFitError::NoRepeat) => None,
         Err(error) => {
             shell.open.push(format!("the contact model was not fitted: {error}"));
             None

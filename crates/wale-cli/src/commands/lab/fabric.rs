@@ -68,8 +68,7 @@ impl Fabric {
         if by_scene {
             let scene = beside(&place, "swatch.toml");
             if !scene.is_file() {
-                let why =
-                    "the contact model of it was not fitted; that takes a chart in [structure] of the fabric file";
+                let why = "the contact model of it was not fitted; that takes a chart or a draft in [structure] of the fabric file";
                 return Err(missing(&place, &scene, why));
             }
             fabric.scene = Some(resolved(&scene)?);

@@ -83,7 +83,10 @@ impl From<SceneFitError> for TestFailure {
 impl From<SwatchTestError> for TestFailure {
     fn from(error: SwatchTestError) -> Self {
         let kind = match error {
-            SwatchTestError::Number { .. } | SwatchTestError::NoChart | SwatchTestError::Chart(_) => Kind::BadInput,
+            SwatchTestError::Number { .. }
+            | SwatchTestError::NoChart
+            | SwatchTestError::Sett
+            | SwatchTestError::Chart(_) => Kind::BadInput,
             SwatchTestError::TooLarge { .. } => Kind::ResourceLimit,
             _ => Kind::NotConverged,
         };

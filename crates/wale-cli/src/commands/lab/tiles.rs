@@ -1,6 +1,6 @@
 //! Tests on tiles: of yarns in full contact, and of the contact model.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
 use wale::picture::{Panel, Plot};
 use wale::scene::Scene;
@@ -127,12 +127,20 @@ pub fn run_contacts(test: &Test, scene: &Scene, title: &str) -> Result<Report, T
     let reference = relaxed_reference(scene)?;
     let settings = NetworkPullSettings::default();
     let strip = |angle: f64| NetworkPull::new(&reference, angle, &settings).map_err(UniformTestError::from);
-    match test {
+    let mut report = match test {
         Test::Stretch(of) | Test::Strip(of) => stretch(strip, of, matches!(test, Test::Strip(_)), title, what),
         Test::KesTensile(of) => kes_tensile(strip, &of.direction, title, what),
         Test::Fast(_) => fast(strip, None, None, title, what),
         _ => Err(TestFailure::bad_input("a tile of the contact model is not tested so")),
+    }?;
+    let aside = |angle: f64| (angle / FRAC_PI_4 - (angle / FRAC_PI_4).round()).abs() > 1e-6;
+    if scene.fabric.woven().is_some() && report.groups.iter().any(|group| group.direction.is_some_and(aside)) {
+        report.remarks.push(
+            "off weft, warp and bias a strip that may not shear pushes threads together: they stay straight, or snap aside"
+                .to_owned(),
+        );
     }
+    Ok(report)
 }
 
 fn lacks_mass(test: &str) -> TestFailure {

@@ -4,6 +4,7 @@ mod fits;
 mod known;
 mod slopes;
 mod stress;
+mod weaves;
 
 use wale::dynamics::stretched_tile::{StretchedTile, TileReference};
 use wale::dynamics::tile_equilibrium::{TileSettings, relax_tile};

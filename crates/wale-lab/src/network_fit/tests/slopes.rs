@@ -11,15 +11,16 @@ const P: usize = TileStiffness::COUNT;
 /// The tile with one stiffness changed by a factor, relaxed again or not.
 fn changed(reference: &TileReference, thick: bool, k: usize, factor: f64, again: bool) -> TileReference {
     let (network, yarns, card) = knit_of(1, 1, thick);
-    let mut stiffness = TileStiffness::of(&yarns, &card);
+    let settings = tight(&card);
+    let mut stiffness = TileStiffness::of(&network, &yarns, &(&card).into());
     stiffness[k] *= factor;
-    let (yarns, card) = TileStiffness::with(&yarns, &card, stiffness);
+    let (yarns, card) = TileStiffness::with(&network, &yarns, &(&card).into(), stiffness);
     let rest = if again {
-        relax_tile_from(&network, &yarns, &card, &tight(&card), reference.rest().coordinates.clone())
+        relax_tile_from(&network, &yarns, &card, &settings, reference.rest().coordinates.clone())
     } else {
         reference.rest().clone()
     };
-    TileReference::new(&network, &yarns, &card, &tight(&card), rest).unwrap()
+    TileReference::new(&network, &yarns, &card, &settings, rest).unwrap()
 }
 
 /// Stress and compression where a stiffness is changed to both sides, and so their slope by its logarithm.
@@ -43,7 +44,7 @@ fn slopes_are_differences_with_the_relaxed_tile_held_and_found_again() {
                 let [stress, compression] = difference(run, 1e-3);
                 let [by_stress, by_compression] =
                     [slopes.stress[k], slopes.compression[k]].map(|slope| slope * stiffness[k]);
-                let name = TileStiffness::NAMES[k];
+                let name = TileStiffness::all(&(&knit_of(1, 1, thick).2).into())[k].name();
                 assert!(
                     (by_stress - stress).abs() < 1e-5 * found.stress,
                     "{name} {again} {angle}: {by_stress} {stress} of {}",

@@ -3,32 +3,32 @@
 use super::direction::Direction;
 use super::solver::StretchError;
 use crate::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings};
-use crate::dynamics::tile_stiffness::{TileStiffness, UnitEnergies};
+use crate::dynamics::tile_stiffness::{TileStiffness, UnitEnergies, bending_and_length};
 use crate::dynamics::tile_system::TileSystem;
 use crate::fabric::coordinates::BLOCK;
 use crate::fabric::{Matrix2, PlaneMap, TileCoordinates};
-use crate::model::{KnitCard, Network, Yarns};
+use crate::model::{FabricCard, Network, Yarns};
 
 /// A tile at rest with its yarns and its card.
 #[derive(Clone, Debug)]
 pub struct TileReference {
     pub(super) network: Network,
     pub(super) yarns: Yarns,
-    pub(super) card: KnitCard,
+    pub(super) card: FabricCard,
     pub(super) settings: TileSettings,
     rest: TileEquilibrium,
     periods: [f64; 2],
 }
 
 impl TileReference {
-    /// A tile that [`crate::dynamics::tile_equilibrium`] has brought to rest with these yarns, card and settings.
+    /// A tile that [`crate::dynamics::tile_equilibrium`] has brought to rest with these yarns, card and settings; of a weave at its sett.
     ///
     /// # Errors
     /// [`StretchError::NotRelaxed`] if it did not come to rest, or is another network's.
     pub fn new(
         network: &Network,
         yarns: impl Into<Yarns>,
-        card: &KnitCard,
+        card: impl Into<FabricCard>,
         settings: &TileSettings,
         rest: TileEquilibrium,
     ) -> Result<Self, StretchError> {
@@ -45,7 +45,7 @@ impl TileReference {
         Ok(Self {
             network: network.clone(),
             yarns: yarns.into(),
-            card: card.clone(),
+            card: card.into(),
             settings: *settings,
             rest,
             periods,
@@ -70,19 +70,22 @@ impl TileReference {
         self.periods[0] * self.periods[1]
     }
 
-    /// Its stiffnesses in SI units, in the order of [`TileStiffness::ALL`].
+    /// Its stiffnesses in SI units, in the order of [`TileStiffness::all`].
     #[must_use]
     pub fn stiffness(&self) -> [f64; TileStiffness::COUNT] {
-        TileStiffness::of(&self.yarns, &self.card)
+        TileStiffness::of(&self.network, &self.yarns, &self.card)
     }
 
     /// Derivatives of the logarithms of both periods by the stiffnesses. `None` where the second derivatives are not positive
     /// definite: the tile may leave for another equilibrium.
     ///
     /// At rest `∂W/∂y = 0`, so that `dy/dp = −H⁻¹ ∂²W/∂y∂p`; the two rows of `H⁻¹` that belong to the periods answer for all
-    /// stiffnesses.
+    /// stiffnesses. A weave keeps its sett, whatever they are.
     #[must_use]
     pub fn size_slopes(&self) -> Option<[[f64; TileStiffness::COUNT]; 2]> {
+        if self.card.woven().is_some() {
+            return Some([[0.0; TileStiffness::COUNT]; 2]);
+        }
         let mut system = TileSystem::of(&self.network, &self.yarns, &self.card, &self.settings);
         let unknowns = system.coordinates.unknowns(self.rest.coordinates.clone());
         system.linearise(&unknowns, 0.0);
@@ -92,9 +95,14 @@ impl TileReference {
         Some([0, 1].map(|axis| work.map(|along| -along[axis] / self.periods[axis])))
     }
 
+    /// Bending stiffness \[N·m²\] and length \[m\] by which its forces are measured.
+    pub(super) fn bending_and_length(&self) -> (f64, f64) {
+        bending_and_length(&self.network, &self.yarns, &self.card)
+    }
+
     /// The energies of the stiffnesses over given coordinates.
     pub(super) fn units(&self, coordinates: TileCoordinates) -> UnitEnergies {
-        let relative_bed = self.settings.bed / self.card.loop_length.powi(3);
+        let relative_bed = self.settings.bed / self.card.unit_length().powi(3);
         UnitEnergies::new(&self.network, &self.yarns, &self.card, relative_bed, coordinates)
     }
 

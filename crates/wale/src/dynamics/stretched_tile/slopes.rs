@@ -4,7 +4,7 @@ use super::solver::{StretchError, StretchedTile};
 use crate::dynamics::tile_stiffness::TileStiffness;
 use crate::fabric::Matrix2;
 
-/// Derivatives of what a stretch test measures, by the stiffnesses in the order of [`TileStiffness::ALL`].
+/// Derivatives of what a stretch test measures, by the stiffnesses in the order of [`TileStiffness::all`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StretchSlopes {
     /// `dσ_s/dp`, the stress in N/m.
@@ -64,7 +64,7 @@ impl StretchedTile {
 
     /// Solves for a right side of own slots and one of compression; also whether that was possible without a shift.
     fn solved(&mut self, own: &[f64], compression: f64) -> Result<(Vec<f64>, bool), StretchError> {
-        let unit = self.force / self.loop_length;
+        let unit = self.force / self.unit_length;
         let mut shift = 0.0;
         loop {
             let mut right = own.to_vec();

@@ -66,7 +66,7 @@ pub struct StretchedEquilibrium {
 ///
 /// `F = U diag(1 + s, 1 − c) Uᵀ` [Sperl2022, section 7.1]: a place `X` of the relaxed tile goes to `F X + ũ`, an image of it `k`
 /// periods away to `F (X + kP) + ũ`. Unknowns are `ũ`, heights, sliding coordinates, and the compression if it is free; rigid motion
-/// and one sliding coordinate of each yarn are held, and the bed lies under the tile, as where it was relaxed.
+/// and one sliding coordinate of each yarn are held, of a weave all of them, and the bed lies under the tile, as where it was relaxed.
 ///
 /// Differs from the paper: there COBYLA looks for the compression of least energy and solves for equilibrium at every try; here it is
 /// one more unknown of Newton's method. Test: `stress_is_the_central_difference_of_the_energy`.
@@ -82,9 +82,9 @@ pub struct StretchedTile {
     pub(super) free_compression: bool,
     /// `√A` \[m\].
     pub(super) length: f64,
-    /// Unit of force `k_b/ℓ²` \[N\], and loop length `ℓ` \[m\].
+    /// Units of force `k_b/ℓ²` \[N\] and of length `ℓ` \[m\].
     pub(super) force: f64,
-    pub(super) loop_length: f64,
+    pub(super) unit_length: f64,
     settings: TileSettings,
 }
 
@@ -95,7 +95,7 @@ pub const ACCEPTED: f64 = 1e-3;
 const FARTHEST: f64 = 2.0;
 
 impl StretchedTile {
-    /// A tile along a direction at an angle \[rad\] from the course; with a compression that is free, so that nothing pulls across,
+    /// A tile along a direction at an angle \[rad\] from the course, of a weave from the weft; with a compression that is free, so that nothing pulls across,
     /// or given.
     ///
     /// # Errors
@@ -104,8 +104,9 @@ impl StretchedTile {
         let length = reference.area().sqrt();
         let coordinates = reference.coordinates(&Direction::at(angle), length);
         let (yarns, card, settings) = (&reference.yarns, &reference.card, reference.settings);
-        let force = yarns.first().bending_stiffness / card.loop_length.powi(2);
-        let bed = settings.bed * force / card.loop_length;
+        let (bending, unit_length) = reference.bending_and_length();
+        let force = bending / unit_length.powi(2);
+        let bed = settings.bed * force / unit_length;
         let units = reference.units(coordinates.clone());
         let held = [true, !free_compression];
         let system = TileSystem::with(&reference.network, yarns, card, bed, coordinates, held)?;
@@ -122,7 +123,7 @@ impl StretchedTile {
             free_compression,
             length,
             force,
-            loop_length: card.loop_length,
+            unit_length,
             settings,
         })
     }
@@ -148,7 +149,7 @@ impl StretchedTile {
             &mut self.system,
             foreseen.filter(|_| sound).unwrap_or(start),
             self.force,
-            self.loop_length,
+            self.unit_length,
             self.settings,
             Trust::new(RULE, 0.0, 0.0),
         );

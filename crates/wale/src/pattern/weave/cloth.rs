@@ -64,38 +64,8 @@ impl Woven {
     /// The sheet, straight and flat, with ends and picks at a distance from their neighbours \[m\].
     #[must_use]
     pub fn network(&self, spacing: [f64; 2]) -> Network {
-        let (ends, picks) = (self.draft.ends(), self.draft.picks());
-        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let mut weaver = Weaver {
-            woven: self,
-            spacing,
-            network: Network {
-                chart_size: [count(picks), count(ends)],
-                row_places: vec![count(ends); picks],
-                yarn_start: vec![0],
-                ..Network::default()
-            },
-            crossing: vec![None; ends * picks],
-            passes: Vec::new(),
-        };
-        for pick in 0..picks {
-            for end in 0..ends {
-                if !weaver.keeps(end, pick) {
-                    continue;
-                }
-                let node = weaver.node(end as f64, pick as f64);
-                weaver.crossing[pick * ends + end] = Some(node);
-                weaver.passes.push([PassId::default(); 2]);
-                weaver.network.loops.push(LoopInfo {
-                    row: count(pick),
-                    column: count(end),
-                    nodes: vec![NodeId::new(node)],
-                    knit: self.draft.warp_up(end, pick),
-                    held: true,
-                });
-            }
-        }
-        (0..ends).for_each(|end| weaver.warp(end));
+        let mut weaver = Weaver::laid(self, spacing);
+        (0..self.draft.ends()).for_each(|end| weaver.warp(end));
         weaver.weft();
         weaver.stack();
         weaver.floats();
@@ -127,17 +97,54 @@ impl Woven {
     }
 }
 
-struct Weaver<'a> {
+/// A network of a draft on its way: first its crossings, then its yarns through them.
+pub(super) struct Weaver<'a> {
     woven: &'a Woven,
     spacing: [f64; 2],
-    network: Network,
+    pub network: Network,
     /// The node of every crossing that is there.
     crossing: Vec<Option<usize>>,
     /// The passes of warp and weft there, by node.
-    passes: Vec<[PassId; 2]>,
+    pub passes: Vec<[PassId; 2]>,
 }
 
-impl Weaver<'_> {
+impl<'a> Weaver<'a> {
+    /// The crossings of a sheet, of which no yarn is there yet.
+    pub fn laid(woven: &'a Woven, spacing: [f64; 2]) -> Self {
+        let (ends, picks) = (woven.draft.ends(), woven.draft.picks());
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let mut weaver = Self {
+            woven,
+            spacing,
+            network: Network {
+                chart_size: [count(picks), count(ends)],
+                row_places: vec![count(ends); picks],
+                yarn_start: vec![0],
+                ..Network::default()
+            },
+            crossing: vec![None; ends * picks],
+            passes: Vec::new(),
+        };
+        for pick in 0..picks {
+            for end in 0..ends {
+                if !weaver.keeps(end, pick) {
+                    continue;
+                }
+                let node = weaver.node(end as f64, pick as f64);
+                weaver.crossing[pick * ends + end] = Some(node);
+                weaver.passes.push([PassId::default(); 2]);
+                weaver.network.loops.push(LoopInfo {
+                    row: count(pick),
+                    column: count(end),
+                    nodes: vec![NodeId::new(node)],
+                    knit: woven.draft.warp_up(end, pick),
+                    held: true,
+                });
+            }
+        }
+        weaver
+    }
+
     /// Where an end and a pick cross \[m\].
     fn place(&self, end: f64, pick: f64) -> DVec3 {
         let place = DVec3::new(end * self.spacing[0], pick * self.spacing[1], 0.0);
@@ -171,12 +178,12 @@ impl Weaver<'_> {
     }
 
     /// The node of a crossing, if it is there.
-    fn at(&self, end: usize, pick: usize) -> Option<usize> {
+    pub fn at(&self, end: usize, pick: usize) -> Option<usize> {
         self.crossing[pick * self.woven.draft.ends() + end]
     }
 
     /// A pass, and the kind of the segment that leads on from it.
-    fn pass(&mut self, node: usize, arc: f64, slides: bool, onward: SegmentKind) -> PassId {
+    pub fn pass(&mut self, node: usize, arc: f64, slides: bool, onward: SegmentKind) -> PassId {
         let pass = PassId::new(self.network.pass_node.len());
         self.network.pass_node.push(NodeId::new(node));
         self.network.pass_image.push([0; 2]);
@@ -188,16 +195,17 @@ impl Weaver<'_> {
         pass
     }
 
-    fn close(&mut self, role: YarnRole, thread: Thread) {
+    /// Ends a yarn; one that closes on an image of itself does so after a length \[m\].
+    pub fn close(&mut self, role: YarnRole, thread: Thread, closure: Option<([i16; 2], f64)>) {
         self.network.yarn_start.push(u32::try_from(self.network.pass_count()).unwrap_or(u32::MAX));
-        self.network.yarn_closure.push(None);
+        self.network.yarn_closure.push(closure);
         self.network.yarn_kind.push(thread.yarn);
         self.network.yarn_role.push(role);
         self.network.yarn_color.push(thread.color.unwrap_or(COLORS[usize::from(role == YarnRole::Weft)]));
     }
 
     /// Between two crossings a yarn changes sides, or floats; behind the last it is an edge.
-    fn onward(&self, here: (usize, usize), next: Option<(usize, usize)>) -> SegmentKind {
+    pub fn onward(&self, here: (usize, usize), next: Option<(usize, usize)>) -> SegmentKind {
         let up = |(end, pick)| self.woven.draft.warp_up(end, pick);
         match next {
             None => SegmentKind::Edge,
@@ -221,7 +229,7 @@ impl Weaver<'_> {
         }
         let node = self.node(end as f64, last as f64 + tail);
         self.pass(node, 2.0 * fringe + (last - first) as f64 * step, false, SegmentKind::Edge);
-        self.close(YarnRole::Warp, draft.warp[end]);
+        self.close(YarnRole::Warp, draft.warp[end], None);
     }
 
     fn weft(&mut self) {
@@ -253,7 +261,7 @@ impl Weaver<'_> {
             if begins {
                 let node = self.node(last as f64 + outward * tail, pick as f64);
                 self.pass(node, arc + fringe, false, SegmentKind::Edge);
-                self.close(YarnRole::Weft, draft.weft[pick]);
+                self.close(YarnRole::Weft, draft.weft[pick], None);
             } else {
                 // A turn half a spacing outside, half way to the next pick.
                 let node = self.node(last as f64 + 0.5 * outward, pick as f64 + 0.5);
@@ -264,7 +272,7 @@ impl Weaver<'_> {
         }
     }
 
-    fn stack(&mut self) {
+    pub fn stack(&mut self) {
         let mut stacks: Vec<Vec<PassId>> = Vec::with_capacity(self.network.node_count());
         for (node, [warp, weft]) in self.passes.iter().enumerate() {
             let up = self.network.loops[node].knit;

@@ -7,6 +7,7 @@ pub mod named;
 pub mod peirce;
 mod shed;
 mod symbols;
+mod tile;
 pub mod wif;
 #[cfg(test)]
 mod wif_tests;
@@ -16,4 +17,5 @@ pub use draft::{Draft, DraftError, Thread};
 pub use named::named_weave;
 pub use peirce::{Jammed, Sett};
 pub use symbols::{DraftSymbolError, read_draft};
+pub use tile::tile;
 pub use wif::{WifError, WifErrorReason, read_wif};
