@@ -90,14 +90,11 @@ pub fn fit_by_gradients<A: Answers>(
     settings: &GradientSettings,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
-    let look = |coordinates: &[f64; P]| -> Result<Option<Found>, A::Unanswered> {
+    let look = |coordinates: &[f64; P]| {
         let question = Question::of(RodSpace::parameters(*coordinates), settings.screening_samples, false);
-        let found = best_scale(problems, answers, &question)?;
-        progress.tell(found.map(|(_, cost)| cost), &question.at);
-        Ok(found.map(|(scale, cost)| {
-            let coordinates = problems[0].space.scaled(coordinates, scale);
-            Found { coordinates, cost, least_squares: None }
-        }))
+        let found = scaled(problems, answers, coordinates, &question)?;
+        progress.tell(found.as_ref().map(|found| found.cost), &question.at);
+        Ok(found)
     };
     let places: Vec<[f64; P]> = (0..settings.screened).map(|k| problems[0].space.at_parts(halton(k))).collect();
     let looked: Vec<Result<Option<Found>, A::Unanswered>> = places.par_iter().map(look).collect();
@@ -170,19 +167,31 @@ fn with_earlier_onset<A: Answers>(
         return Ok(None);
     }
     let rest = RodSpace::parameters(found.coordinates);
-    let look = |part: &f64| -> Result<Option<(f64, [f64; P])>, A::Unanswered> {
+    let look = |part: &f64| {
         let mut place = found.coordinates;
         place[onset] = low + part * (place[onset] - low);
         // Yarns at rest are stretched by too little for an onset to matter.
         let question = Question { rest, ..Question::of(RodSpace::parameters(place), samples, false) };
-        let looked = best_scale(problems, answers, &question)?;
         progress.tell(None, &question.at);
-        Ok(looked.map(|(scale, cost)| (cost, space.scaled(&place, scale))))
+        scaled(problems, answers, &place, &question)
     };
-    let looked: Vec<Result<Option<(f64, [f64; P])>, A::Unanswered>> = EARLIER.par_iter().map(look).collect();
-    let looked: Vec<Option<(f64, [f64; P])>> = looked.into_iter().collect::<Result<_, _>>()?;
-    let best = looked.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
-    Ok(best.map(|(_, place)| place))
+    let looked: Vec<Result<Option<Found>, A::Unanswered>> = EARLIER.par_iter().map(look).collect();
+    let looked = looked.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
+    Ok(looked.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|best| best.coordinates))
+}
+
+/// A place with the stiffnesses that suit it best, as far as one factor for all can tell.
+fn scaled<A: Answers>(
+    problems: &[YarnProblem],
+    answers: &A,
+    place: &[f64; P],
+    question: &Question,
+) -> Result<Option<Found>, A::Unanswered> {
+    let scaled = |(scale, cost)| {
+        let coordinates = problems[0].space.scaled(place, scale);
+        Found { coordinates, cost, least_squares: None }
+    };
+    Ok(best_scale(problems, answers, question)?.map(scaled))
 }
 
 /// Least squares from one place.
