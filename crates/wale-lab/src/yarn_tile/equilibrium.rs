@@ -165,15 +165,6 @@ impl TileSolver {
         })
     }
 
-    /// Begins with as much trust in second derivatives as another ended with: of a tile that is nearly the same.
-    #[must_use]
-    pub(super) fn trusting(mut self, other: Option<&Self>) -> Self {
-        if let Some(other) = other {
-            self.trust = other.trust;
-        }
-        self
-    }
-
     /// The tile.
     #[must_use]
     pub fn tile(&self) -> &YarnTile {
