@@ -143,41 +143,70 @@ pub fn improve<A: Answers>(
     least_noise: f64,
     progress: &Progress<'_>,
 ) -> Result<Option<Found>, A::Unanswered> {
-    let Some(first) = descend(problems, answers, from, round, least_noise, progress)? else { return Ok(None) };
-    let Some(from) = with_earlier_onset(problems, answers, &first, round.samples, progress)? else {
-        return Ok(Some(first));
-    };
-    let second = descend(problems, answers, from, round, least_noise, progress)?;
+    let search = Search { problems, answers, round, least_noise, progress };
+    let Some(first) = search.descend(from)? else { return Ok(None) };
+    let Some(from) = search.earlier_onset(&first)? else { return Ok(Some(first)) };
+    let second = search.descend(from)?;
     Ok(Some(second.filter(|second| second.cost < first.cost).unwrap_or(first)))
 }
 
-/// The best place with an earlier onset, and stiffnesses that make up for it, if no yarn reaches the onset of a place that was found.
-fn with_earlier_onset<A: Answers>(
-    problems: &[YarnProblem],
-    answers: &A,
-    found: &Found,
-    samples: usize,
-    progress: &Progress<'_>,
-) -> Result<Option<[f64; P]>, A::Unanswered> {
-    let onset = RodParameter::Onset as usize;
-    let space = &problems[0].space;
-    let [low, high] = space.coordinate_bounds()[onset];
-    let felt = found.least_squares.as_ref().is_some_and(|least_squares| least_squares.uncertainty[onset].is_finite());
-    if felt || low >= high || found.cost < ENOUGH {
-        return Ok(None);
+/// Least squares of some fabrics.
+struct Search<'a, A> {
+    problems: &'a [YarnProblem],
+    answers: &'a A,
+    round: &'a Round,
+    least_noise: f64,
+    progress: &'a Progress<'a>,
+}
+
+impl<A: Answers> Search<'_, A> {
+    /// From one place down.
+    fn descend(&self, from: [f64; P]) -> Result<Option<Found>, A::Unanswered> {
+        let Self { problems, answers, round, least_noise, progress } = *self;
+        let evaluate = |coordinates: &[f64; P], slopes: bool| {
+            let at = RodSpace::parameters(*coordinates);
+            let question = Question::of(at, round.samples, slopes);
+            let residuals = ask_all(problems, answers, &question)?;
+            progress.tell(residuals.as_ref().map(Residuals::cost), &at);
+            let Some(mut residuals) = residuals else { return Ok(None) };
+            if slopes && problems[0].rest_shapes {
+                add_slopes_of_rest(problems, answers, coordinates, &question, &mut residuals)?;
+            }
+            Ok(Some(residuals))
+        };
+        let bounds = problems[0].space.coordinate_bounds();
+        let search = LeastSquaresSettings {
+            least_gain: LEAST_GAIN,
+            enough: ENOUGH,
+            ..LeastSquaresSettings::to_the_end(round.evaluations, bounds, least_noise)
+        };
+        let found = fit(evaluate, &[from], &search)?;
+        Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
     }
-    let rest = RodSpace::parameters(found.coordinates);
-    let look = |part: &f64| {
-        let mut place = found.coordinates;
-        place[onset] = low + part * (place[onset] - low);
-        // Yarns at rest are stretched by too little for an onset to matter.
-        let question = Question { rest, ..Question::of(RodSpace::parameters(place), samples, false) };
-        progress.tell(None, &question.at);
-        scaled(problems, answers, &place, &question)
-    };
-    let looked: Vec<Result<Option<Found>, A::Unanswered>> = EARLIER.par_iter().map(look).collect();
-    let looked = looked.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
-    Ok(looked.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|best| best.coordinates))
+
+    /// The best place with an earlier onset, and stiffnesses that make up for it, if no yarn reaches the onset of a place that was found.
+    fn earlier_onset(&self, found: &Found) -> Result<Option<[f64; P]>, A::Unanswered> {
+        let onset = RodParameter::Onset as usize;
+        let space = &self.problems[0].space;
+        let [low, high] = space.coordinate_bounds()[onset];
+        let felt =
+            found.least_squares.as_ref().is_some_and(|least_squares| least_squares.uncertainty[onset].is_finite());
+        if felt || low >= high || found.cost < ENOUGH {
+            return Ok(None);
+        }
+        let rest = RodSpace::parameters(found.coordinates);
+        let look = |part: &f64| {
+            let mut place = found.coordinates;
+            place[onset] = low + part * (place[onset] - low);
+            // Yarns at rest are stretched by too little for an onset to matter.
+            let question = Question { rest, ..Question::of(RodSpace::parameters(place), self.round.samples, false) };
+            self.progress.tell(None, &question.at);
+            scaled(self.problems, self.answers, &place, &question)
+        };
+        let looked: Vec<Result<Option<Found>, A::Unanswered>> = EARLIER.par_iter().map(look).collect();
+        let looked = looked.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().flatten();
+        Ok(looked.min_by(|a, b| a.cost.total_cmp(&b.cost)).map(|best| best.coordinates))
+    }
 }
 
 /// A place with the stiffnesses that suit it best, as far as one factor for all can tell.
@@ -192,36 +221,6 @@ fn scaled<A: Answers>(
         Found { coordinates, cost, least_squares: None }
     };
     Ok(best_scale(problems, answers, question)?.map(scaled))
-}
-
-/// Least squares from one place.
-fn descend<A: Answers>(
-    problems: &[YarnProblem],
-    answers: &A,
-    from: [f64; P],
-    round: &Round,
-    least_noise: f64,
-    progress: &Progress<'_>,
-) -> Result<Option<Found>, A::Unanswered> {
-    let evaluate = |coordinates: &[f64; P], slopes: bool| {
-        let at = RodSpace::parameters(*coordinates);
-        let question = Question::of(at, round.samples, slopes);
-        let residuals = ask_all(problems, answers, &question)?;
-        progress.tell(residuals.as_ref().map(Residuals::cost), &at);
-        let Some(mut residuals) = residuals else { return Ok(None) };
-        if slopes && problems[0].rest_shapes {
-            add_slopes_of_rest(problems, answers, coordinates, &question, &mut residuals)?;
-        }
-        Ok(Some(residuals))
-    };
-    let bounds = problems[0].space.coordinate_bounds();
-    let search = LeastSquaresSettings {
-        least_gain: LEAST_GAIN,
-        enough: ENOUGH,
-        ..LeastSquaresSettings::to_the_end(round.evaluations, bounds, least_noise)
-    };
-    let found = fit(evaluate, &[from], &search)?;
-    Ok(found.map(|found| Found { coordinates: found.parameters, cost: found.cost, least_squares: Some(found) }))
 }
 
 /// Adds what each number does to the residuals by way of the rest shapes: they are found with a number that differs a little, and
