@@ -173,6 +173,6 @@ function patternText(work, tile) {
   return [
     "*pattern # px py radius vertices", `${periods.map(text).join(" ")} ${text(work.radius_m)} ${count}`, "",
     "*Q # x y z", ...lines.Q, "", "*E # first last dx dy", ...lines.E, "",
-    "*RL # rest length of the edge that begins at each vertex", ...lines.RL, "", "*RK # rest curvature, of which the size is used", ...lines.RK, "",
+    "*RL # rest length of the edge that begins at each vertex", ...lines.RL, "", "*RK # rest curvature; without a section RT yarns are as wound as they lie", ...lines.RK, "",
   ].join("\n");
 }

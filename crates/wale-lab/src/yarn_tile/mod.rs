@@ -12,6 +12,7 @@ mod of_structure;
 mod path;
 mod pattern_file;
 mod resized;
+mod rest;
 mod rest_shape;
 mod sensitivity;
 mod soundness;
@@ -29,6 +30,7 @@ pub use equilibrium::{EquilibriumSettings, TileEquilibrium, TileError, TileSolve
 pub use material::RodMaterial;
 pub use of_structure::{StructureError, tile_of_chart, tile_of_draft};
 pub use pattern_file::{PatternFileError, read_pattern, write_pattern};
+pub use rest::RestShape;
 pub use rest_shape::{RestShapeReport, RestShapeSettings, contact_radius, estimate_rest_shapes};
 pub use sensitivity::{BendingAnswer, EquilibriumSlopes, RodParameter, bending_answer};
 pub use soundness::{Unsound, unsound};

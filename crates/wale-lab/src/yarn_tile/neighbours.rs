@@ -27,7 +27,7 @@ pub struct Followers {
 impl Followers {
     /// `between` is the length of yarn between the middles of edges that may touch \[m\].
     pub fn new(tile: &YarnTile, between: f64) -> Self {
-        let lengths = tile.rest_lengths();
+        let lengths = &tile.rest.lengths;
         let follow = |first: usize| {
             let (mut found, mut shift) = (Vec::new(), tile.edges[first].shift);
             let mut edge = tile.around[tile.edges[first].ends[1] as usize][1] as usize;
@@ -242,7 +242,7 @@ mod tests {
             let mut along = 0.0;
             let mut last = edge;
             for &(next, _) in following {
-                along += 0.5 * (tile.rest_lengths[last] + tile.rest_lengths[next as usize]);
+                along += 0.5 * (tile.rest.lengths[last] + tile.rest.lengths[next as usize]);
                 last = next as usize;
             }
             assert!(along < std::f64::consts::PI * tile.radius || following.len() == 1, "{along}");

@@ -141,9 +141,7 @@ fn of_closed_curves(
             }),
         );
     }
-    let n = vertices.len();
-    let tile = YarnTile::new(periods, radius, vertices, edges, vec![1.0; n], vec![0.0; n])?;
-    Ok(tile.at_rest_as_it_lies())
+    Ok(YarnTile::new(periods, radius, vertices, edges)?)
 }
 
 /// Points evenly along a polyline, the last of which is left out; at most so far apart \[m\].

@@ -5,13 +5,18 @@
 //! *Q       # a vertex a line: x y z, and a twist angle that is not used
 //! *E       # an edge a line: first vertex, last vertex, and in which tile the last one lies
 //! *RL      # of each vertex: rest length of the edge that begins there
-//! *RK      # of each vertex: rest curvature in two material directions, of which the size is used
+//! *RK      # of each vertex: rest curvature in two material directions
+//! *RT      # of each vertex: rest twist of the material directions; without it yarns are as wound as they lie
 //! ```
 //!
-//! Lengths in metres. Sections on twist and material frames are skipped; this model has neither.
+//! Lengths in metres. Sections on reference frames are skipped, which this model does not have. Of curvatures and twists it keeps what the choice of
+//! material directions does not change: sizes, and the angle from one to the next, which has half of each vertex's twist.
+
+use std::f64::consts::PI;
 
 use thiserror::Error;
 
+use super::rest::RestShape;
 use super::tile::{Edge, MOST_VERTICES, TileFault, YarnTile};
 
 /// Why a file is no yarn pattern, and where.
@@ -31,9 +36,12 @@ pub struct PatternFileError {
 }
 
 /// Sections that are read, with the least and largest number of numbers in a line.
-const SECTIONS: [(&str, usize, usize); 5] = [("pattern", 4, 4), ("Q", 3, 4), ("E", 4, 4), ("RL", 1, 1), ("RK", 2, 2)];
+const SECTIONS: [(&str, usize, usize); 6] =
+    [("pattern", 4, 4), ("Q", 3, 4), ("E", 4, 4), ("RL", 1, 1), ("RK", 2, 2), ("RT", 1, 1)];
+/// The last of these may be missing.
+const TWISTS: usize = 5;
 /// Sections that are skipped.
-const SKIPPED: [&str; 3] = ["RT", "RefD1", "RefT"];
+const SKIPPED: [&str; 2] = ["RefD1", "RefT"];
 /// Longest piece of the file that an error repeats.
 const MOST_REPEATED: usize = 40;
 
@@ -46,7 +54,7 @@ struct Section {
 
 struct Reader<'a> {
     file: &'a str,
-    sections: [Option<Section>; 5],
+    sections: [Option<Section>; 6],
     last_line: usize,
 }
 
@@ -192,13 +200,26 @@ impl Reader<'_> {
         let vertices = positions.rows.iter().map(|(_, x)| [x[0], x[1], x[2]]).collect();
         // Rest lengths stand in the order of the vertices that edges begin at.
         let lengths = edges.iter().map(|edge| of_lengths.rows[edge.ends[0] as usize].1[0]).collect();
-        let curvatures = of_curvatures.rows.iter().map(|(_, k)| k[0].hypot(k[1])).collect();
+        let curvatures: Vec<[f64; 2]> = of_curvatures.rows.iter().map(|(_, k)| [k[0], k[1]]).collect();
+        let twists = match self.sections[TWISTS] {
+            Some(_) => Some(self.section_of(TWISTS, count)?.rows.iter().map(|(_, t)| t[0]).collect::<Vec<f64>>()),
+            None => None,
+        };
         let begins: Vec<u32> = edges.iter().map(|edge| edge.ends[0]).collect();
-        YarnTile::new([sizes[0], sizes[1]], sizes[2], vertices, edges, lengths, curvatures).map_err(|fault| {
+        let tile = YarnTile::new([sizes[0], sizes[1]], sizes[2], vertices, edges).and_then(|tile| {
+            let torsions = match twists {
+                Some(twists) => tile.edges().iter().map(|edge| torsion(edge.ends, &curvatures, &twists)).collect(),
+                None => tile.rest().torsions.clone(),
+            };
+            let curvatures = curvatures.iter().map(|k| k[0].hypot(k[1])).collect();
+            tile.with_rest(RestShape { lengths, curvatures, torsions })
+        });
+        tile.map_err(|fault| {
             let line = match &fault {
                 TileFault::Edge { edge, .. } => of_edges.rows[*edge].0,
                 TileFault::Vertex { vertex } => positions.rows[*vertex].0,
                 TileFault::Rest { what: "length", index, .. } => of_lengths.rows[begins[*index] as usize].0,
+                TileFault::Rest { what: "torsion", .. } => *line,
                 TileFault::Rest { index, .. } => of_curvatures.rows[*index].0,
                 TileFault::Fork { .. } => of_edges.header,
                 TileFault::Size { .. } | TileFault::Count { .. } => *line,
@@ -206,6 +227,40 @@ impl Reader<'_> {
             self.error(line, "the numbers", format!("{fault}"), "mend the line")
         })
     }
+}
+
+/// The angle by which rest curvatures turn about an edge: that between them in the material directions of both ends, and what these turn
+/// by from the middle of one bend to the middle of the other.
+fn torsion(ends: [u32; 2], curvatures: &[[f64; 2]], twists: &[f64]) -> f64 {
+    let [first, last] = ends.map(|vertex| {
+        let [along, across] = curvatures[vertex as usize];
+        (across.atan2(along), 0.5 * twists[vertex as usize])
+    });
+    wrapped(last.0 - first.0 + first.1 + last.1)
+}
+
+/// The same angle between −π and π.
+fn wrapped(angle: f64) -> f64 {
+    (angle + PI).rem_euclid(2.0 * PI) - PI
+}
+
+/// Rest curvatures in material directions without twist but at each yarn's first vertex, where the yarn closes: what [`torsion`] finds again.
+fn in_material_directions(tile: &YarnTile) -> (Vec<[f64; 2]>, Vec<f64>) {
+    let rest = tile.rest();
+    let (mut curvatures, mut twists) = (vec![[0.0; 2]; tile.vertex_count()], vec![0.0; tile.vertex_count()]);
+    for yarn in &tile.yarns {
+        let begins = |edge: u32| tile.edges()[edge as usize].ends[0] as usize;
+        let twist = wrapped(yarn.iter().map(|&edge| rest.torsions[edge as usize]).sum());
+        let (first, mut angle) = (begins(yarn[0]), 0.0);
+        for &edge in yarn {
+            let vertex = begins(edge);
+            let (sine, cosine) = f64::sin_cos(angle);
+            curvatures[vertex] = [cosine, sine].map(|part| rest.curvatures[vertex] * part);
+            angle += rest.torsions[edge as usize] - if vertex == first { 0.5 * twist } else { 0.0 };
+        }
+        twists[first] = twist;
+    }
+    (curvatures, twists)
 }
 
 /// A piece of the file, cut where it is long.
@@ -237,10 +292,13 @@ pub fn write_pattern(tile: &YarnTile) -> String {
     }
     line("\n*RL # rest length of the edge that begins at each vertex".into());
     for around in &tile.around {
-        line(format!("{:e}", tile.rest_lengths()[around[1] as usize]));
+        line(format!("{:e}", tile.rest().lengths[around[1] as usize]));
     }
-    line("\n*RK # rest curvature".into());
-    tile.rest_curvatures().iter().for_each(|k| line(format!("{k:e} 0")));
+    let (curvatures, twists) = in_material_directions(tile);
+    line("\n*RK # rest curvature in two material directions".into());
+    curvatures.iter().for_each(|[along, across]| line(format!("{along:e} {across:e}")));
+    line("\n*RT # rest twist of the material directions".into());
+    twists.iter().for_each(|twist| line(format!("{twist:e}")));
     text
 }
 
@@ -254,8 +312,16 @@ mod tests {
         for tile in [basket(), stockinette()] {
             let read = read_pattern("tile.pyp", &write_pattern(&tile)).unwrap();
             assert_eq!(read.edges(), tile.edges());
-            assert_eq!(read.rest_lengths(), tile.rest_lengths());
-            assert_eq!(read.rest_curvatures(), tile.rest_curvatures());
+            let (written, kept) = (tile.rest(), read.rest());
+            assert_eq!(kept.lengths, written.lengths);
+            let near = |a: &f64, b: &f64| (a - b).abs() < 1e-12;
+            assert!(kept.curvatures.iter().zip(&written.curvatures).all(|(a, b)| near(a, b)));
+            // Where a yarn is straight its torsion is anything.
+            for ((edge, a), b) in tile.edges().iter().zip(&kept.torsions).zip(&written.torsions) {
+                let bent = edge.ends.iter().all(|&vertex| written.curvatures[vertex as usize] > 1e-9);
+                assert!(!bent || wrapped(a - b).abs() < 1e-9, "{a} {b}");
+            }
+            assert!(written.torsions.iter().any(|torsion| torsion.abs() > 0.1));
             // Heights are measured from their mean again.
             let near = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-15);
             assert!(read.vertices().iter().zip(tile.vertices()).all(|(a, b)| near(a, b)));
@@ -263,19 +329,30 @@ mod tests {
     }
 
     const GOOD: &str = "*pattern # a comment\n0.01 0.02 0.001 2\n\n*Q\n0 0 0 0.1\n0.005 0 0 0.2\n*E\n1 0 1 0\n0 1 0 0\n*RL\n\
-                        0.005\n0.006\n*RK\n3 4\n0 0\n*RT\nwhatever\n";
+                        0.005\n0.006\n*RK\n3 4\n0 0\n*RefT\nwhatever\n";
 
     #[test]
     fn rest_lengths_belong_to_the_vertex_that_an_edge_begins_at() {
         let tile = read_pattern("a.pyp", GOOD).unwrap();
-        assert_eq!(tile.rest_lengths(), [0.006, 0.005]);
-        assert_eq!(tile.rest_curvatures(), [5.0, 0.0]);
+        assert_eq!(tile.rest().lengths, [0.006, 0.005]);
+        assert_eq!(tile.rest().curvatures, [5.0, 0.0]);
+    }
+
+    #[test]
+    fn torsion_is_that_of_curvatures_and_twists() {
+        let twisted = GOOD.replace("3 4\n0 0\n", "3 4\n0 2\n*RT\n0.1\n0.3\n");
+        let turn = |from: [f64; 2], to: [f64; 2]| to[1].atan2(to[0]) - from[1].atan2(from[0]) + 0.2;
+        let tile = read_pattern("a.pyp", &twisted).unwrap();
+        let expected = [turn([0.0, 2.0], [3.0, 4.0]), turn([3.0, 4.0], [0.0, 2.0])];
+        assert!(tile.rest().torsions.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12));
+        let error = read_pattern("a.pyp", &twisted.replace("0.1\n0.3\n", "0.1\n")).expect_err("a line is missing");
+        assert!(error.to_string().contains("section `RT`"), "{error}");
     }
 
     #[test]
     fn errors_say_where_what_why_and_the_mend() {
         let cases = [
-            ("*RT\nwhatever\n", "*twist\n", 16, "`twist`"),
+            ("*RefT\nwhatever\n", "*twist\n", 16, "`twist`"),
             ("0.006", "six", 12, "`six`"),
             ("0.006", "nan", 12, "`nan`"),
             ("0.006", "1e300", 12, "`1e300`"),

@@ -3,6 +3,7 @@
 use super::coarse::CoarseDeformation;
 use super::equilibrium::{EquilibriumSettings, TileError, TileSolver};
 use super::material::RodMaterial;
+use super::rest::RestShape;
 use super::rest_shape::contact_radius;
 use super::tile::YarnTile;
 
@@ -40,7 +41,7 @@ impl YarnTile {
         let mut material = RodMaterial { bending: BENDING * rod.bending, ..rod };
         // Yarns that touch hard keep their distance.
         material.contact[1].stiffness = stretch / radius;
-        let straight = Self { rest_curvatures: vec![0.0; self.vertex_count()], ..self.at_rest_as_it_lies() };
+        let straight = Self { rest: RestShape::straight(self.lengths()), ..self.clone() };
         let settings = EquilibriumSettings { anchor: ANCHOR, ..EquilibriumSettings::default() };
         let mut solver = TileSolver::new(&straight, &material, settings)?;
         let mut tile = straight.clone();

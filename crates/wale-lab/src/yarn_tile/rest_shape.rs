@@ -56,7 +56,7 @@ pub struct RestShapeReport {
     pub equilibrium: TileEquilibrium,
 }
 
-/// Finds rest lengths and rest curvatures with which the undeformed tile bears little stress, by turns of equilibria and of
+/// Finds rest lengths, curvatures and torsions with which the undeformed tile bears little stress, by turns of equilibria and of
 /// resetting the rest shapes to them [Sperl2022, section 7.2].
 ///
 /// # Errors
@@ -120,7 +120,7 @@ fn moved(tile: &YarnTile, found: &TileEquilibrium) -> YarnTile {
 /// The tile there, at rest as it lies but for edges that would have changed too much.
 fn reset(tile: &YarnTile, found: &TileEquilibrium, registered: &[f64], most: f64) -> YarnTile {
     let mut tile = moved(tile, found).at_rest_as_it_lies();
-    for (rest, &length) in tile.rest_lengths.iter_mut().zip(registered) {
+    for (rest, &length) in tile.rest.lengths.iter_mut().zip(registered) {
         *rest = rest.clamp((1.0 - most) * length, (1.0 + most) * length);
     }
     tile

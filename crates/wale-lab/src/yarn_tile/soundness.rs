@@ -46,7 +46,7 @@ const LEAST_DISTANCE: f64 = 0.1;
 /// Why a tile is no fabric, if it is none.
 #[must_use]
 pub fn unsound(tile: &YarnTile) -> Option<Unsound> {
-    for ((edge, length), rest) in tile.edges().iter().zip(tile.lengths()).zip(tile.rest_lengths()) {
+    for ((edge, length), rest) in tile.edges().iter().zip(tile.lengths()).zip(&tile.rest().lengths) {
         let times = length / rest;
         if !(1.0 / MOST_STRETCH..=MOST_STRETCH).contains(&times) {
             return Some(Unsound::Jumps { from: edge.ends[0], to: edge.ends[1], times });
@@ -96,16 +96,10 @@ mod tests {
         // A longer period leaves a gap that the last edge bridges.
         let tile = basket();
         let [px, py] = tile.periods();
-        let lengths = tile.rest_lengths().to_vec();
-        let open = YarnTile::new(
-            [1.4 * px, py],
-            tile.radius(),
-            tile.vertices().to_vec(),
-            tile.edges().to_vec(),
-            lengths,
-            tile.rest_curvatures().to_vec(),
-        )
-        .expect("numbers");
+        let (vertices, edges) = (tile.vertices().to_vec(), tile.edges().to_vec());
+        let open = YarnTile::new([1.4 * px, py], tile.radius(), vertices, edges)
+            .and_then(|open| open.with_rest(tile.rest().clone()))
+            .expect("numbers");
         let found = unsound(&open);
         assert!(matches!(found, Some(Unsound::Jumps { times, .. }) if times > 2.0), "{found:?}");
     }
@@ -115,10 +109,7 @@ mod tests {
         let tile = basket();
         let flat: Vec<[f64; 3]> = tile.vertices().iter().map(|&[x, y, _]| [x, y, 0.0]).collect();
         let edges = tile.edges().to_vec();
-        let n = flat.len();
-        let flat =
-            YarnTile::new(tile.periods(), tile.radius(), flat, edges, vec![1.0; n], vec![0.0; n]).expect("numbers");
-        let found = unsound(&flat.at_rest_as_it_lies());
+        let found = unsound(&YarnTile::new(tile.periods(), tile.radius(), flat, edges).expect("numbers"));
         assert!(matches!(found, Some(Unsound::Meet { part, .. }) if part < 1e-9), "{found:?}");
     }
 }

@@ -24,7 +24,7 @@ pub struct TileSystem {
     pub deformation: CoarseDeformation,
     pub constraints: Constraints,
     pub stretch: Kind<RodStretch, 2>,
-    pub bending: Kind<RodBending, 3>,
+    pub bending: Kind<RodBending, 4>,
     pub contact: Kind<RodContact, 4>,
     pub second: ConstrainedSystem,
     /// Gradient by the displacements, and by the compression \[N, J\].
@@ -58,16 +58,23 @@ impl TileSystem {
     ) -> Result<Self, CholeskyError> {
         let own = |vertex: u32| Image { vertex, shift: [0, 0] };
         let image = |(vertex, shift): (u32, [i32; 2])| Image { vertex, shift };
-        let stretch = Kind::new(tile.edges.iter().zip(&tile.rest_lengths).map(|(edge, &rest_length)| {
+        let stretch = Kind::new(tile.edges.iter().zip(&tile.rest.lengths).map(|(edge, &rest_length)| {
             let RodMaterial { soft_stretch: soft, stiff_stretch: stiff, onset, .. } = *material;
             (RodStretch { soft, stiff, onset, rest_length }, [own(edge.ends[0]), image((edge.ends[1], edge.shift))])
         }));
-        let bending = Kind::new((0..tile.vertex_count()).map(|vertex| {
-            let rest_length = tile.around[vertex].iter().map(|&edge| tile.rest_lengths[edge as usize]).sum();
-            let element =
-                RodBending { stiffness: material.bending, rest_curvature: tile.rest_curvatures[vertex], rest_length };
-            let [before, after] = tile.beside(vertex).map(image);
-            (element, [before, own(vertex as u32), after])
+        let bending = Kind::new(tile.edges.iter().enumerate().map(|(index, edge)| {
+            let [first, last] = edge.ends;
+            let [before, after] = [tile.around[first as usize][0], tile.around[last as usize][1]];
+            let element = RodBending {
+                stiffness: material.bending,
+                rest_curvatures: edge.ends.map(|vertex| tile.rest.curvatures[vertex as usize]),
+                rest_torsion: tile.rest.torsions[index],
+                rest_lengths: [before, index as u32, after].map(|edge| tile.rest.lengths[edge as usize]),
+            };
+            let [before, _] = tile.beside(first as usize);
+            let [_, (after, beyond)] = tile.beside(last as usize);
+            let beyond = [edge.shift[0] + beyond[0], edge.shift[1] + beyond[1]];
+            (element, [image(before), own(first), image((last, edge.shift)), image((after, beyond))])
         }));
         let constraints = Constraints::new(tile);
         let pattern = Arc::new(BlockPattern::from_pairs(tile.vertex_count(), []));
@@ -163,7 +170,7 @@ impl TileSystem {
                 [Image { vertex: e.ends[0], shift }, Image { vertex: e.ends[1], shift: to }]
             };
             let ([a, b], [c, d]) = (ends(pair.first, [0, 0]), ends(pair.second, pair.shift));
-            let rest_area = tile.rest_lengths[pair.first as usize] * tile.rest_lengths[pair.second as usize];
+            let rest_area = tile.rest.lengths[pair.first as usize] * tile.rest.lengths[pair.second as usize];
             (RodContact { phases, reading, rest_area }, [a, b, c, d])
         }));
         let pattern = Arc::clone(self.second.matrix.pattern());
@@ -244,7 +251,7 @@ impl TileSystem {
     }
 
     /// The elements, moved out while the rest of the system is written to.
-    fn take(&mut self) -> (Kind<RodStretch, 2>, Kind<RodBending, 3>, Kind<RodContact, 4>) {
+    fn take(&mut self) -> (Kind<RodStretch, 2>, Kind<RodBending, 4>, Kind<RodContact, 4>) {
         (
             std::mem::replace(&mut self.stretch, Kind::new(std::iter::empty())),
             std::mem::replace(&mut self.bending, Kind::new(std::iter::empty())),

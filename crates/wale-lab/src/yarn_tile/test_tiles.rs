@@ -17,9 +17,7 @@ fn of_rows(periods: [f64; 2], radius: f64, rows: &[(Vec<[f64; 3]>, [i32; 2])]) -
             }),
         );
     }
-    let n = vertices.len();
-    let tile = YarnTile::new(periods, radius, vertices, edges, vec![1.0; n], vec![0.0; n]).expect("a tile");
-    tile.at_rest_as_it_lies()
+    YarnTile::new(periods, radius, vertices, edges).expect("a tile")
 }
 
 /// A straight yarn along the first period, alone.

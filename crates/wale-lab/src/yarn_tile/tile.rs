@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-use wale_numerics::jet::vector3::{cross, dot, sub};
+use wale_numerics::jet::vector3::{dot, sub};
+
+use super::rest::RestShape;
 
 /// Most vertices of a tile.
 pub const MOST_VERTICES: usize = 100_000;
@@ -28,8 +30,7 @@ pub struct YarnTile {
     pub(super) radius: f64,
     pub(super) vertices: Vec<[f64; 3]>,
     pub(super) edges: Vec<Edge>,
-    pub(super) rest_lengths: Vec<f64>,
-    pub(super) rest_curvatures: Vec<f64>,
+    pub(super) rest: RestShape,
     /// Edges of each yarn in their order.
     pub(super) yarns: Vec<Vec<u32>>,
     /// Of each vertex the edge that ends there and the one that begins there.
@@ -81,10 +82,10 @@ pub enum TileFault {
         /// Number of edges that begin there.
         beginning: usize,
     },
-    /// A rest length or curvature that is none.
+    /// A rest length, curvature or torsion that is none.
     #[error("the rest {what} number {index} is {value}")]
     Rest {
-        /// Length or curvature.
+        /// Length, curvature or torsion.
         what: &'static str,
         /// Its place in the list.
         index: usize,
@@ -94,8 +95,7 @@ pub enum TileFault {
 }
 
 impl YarnTile {
-    /// A tile from its periods \[m\], the yarns' radius \[m\], vertices \[m\], edges, their rest lengths \[m\], and the sizes of the
-    /// vertices' rest curvatures `2 tan(θ/2)` \[–\].
+    /// A tile from its periods \[m\], the yarns' radius \[m\], vertices \[m\] and edges, at rest as it lies.
     ///
     /// # Errors
     /// The first [`TileFault`].
@@ -104,8 +104,6 @@ impl YarnTile {
         radius: f64,
         mut vertices: Vec<[f64; 3]>,
         edges: Vec<Edge>,
-        rest_lengths: Vec<f64>,
-        rest_curvatures: Vec<f64>,
     ) -> Result<Self, TileFault> {
         let positive = |value: f64| value > 0.0 && value.is_finite();
         for (what, value) in [("first period", periods[0]), ("second period", periods[1]), ("radius", radius)] {
@@ -117,36 +115,34 @@ impl YarnTile {
         if n == 0 || n > MOST_VERTICES {
             return Err(TileFault::Count { what: "vertices", found: n, wanted: n.clamp(1, MOST_VERTICES) });
         }
-        let counts =
-            [("edges", edges.len()), ("rest lengths", rest_lengths.len()), ("rest curvatures", rest_curvatures.len())];
-        if let Some(&(what, found)) = counts.iter().find(|count| count.1 != n) {
-            return Err(TileFault::Count { what, found, wanted: n });
+        if edges.len() != n {
+            return Err(TileFault::Count { what: "edges", found: edges.len(), wanted: n });
         }
         if let Some(vertex) = vertices.iter().position(|x| !x.iter().all(|x| x.is_finite())) {
             return Err(TileFault::Vertex { vertex });
         }
         let around = ends(n, &edges)?;
-        for (index, &value) in rest_lengths.iter().enumerate() {
-            if !positive(value) {
-                return Err(TileFault::Rest { what: "length", index, value });
-            }
-        }
-        for (index, &value) in rest_curvatures.iter().enumerate() {
-            if value < 0.0 || !value.is_finite() {
-                return Err(TileFault::Rest { what: "curvature", index, value });
-            }
-        }
         let mean = vertices.iter().map(|x| x[2]).sum::<f64>() / n as f64;
         // Heights that were centred once stay as they are, bit by bit.
         if mean.abs() > 1e-12 * radius {
             vertices.iter_mut().for_each(|x| x[2] -= mean);
         }
         let yarns = yarns(&edges, &around);
-        let tile = Self { periods, radius, vertices, edges, rest_lengths, rest_curvatures, yarns, around };
+        let tile = Self { periods, radius, vertices, edges, rest: RestShape::default(), yarns, around };
         if let Some(edge) = tile.lengths().iter().position(|&length| length <= 0.0) {
             return Err(TileFault::Edge { edge, why: "has no length" });
         }
-        Ok(tile)
+        Ok(tile.at_rest_as_it_lies())
+    }
+
+    /// The tile with another rest shape.
+    ///
+    /// # Errors
+    /// [`TileFault::Count`] or [`TileFault::Rest`].
+    pub fn with_rest(mut self, rest: RestShape) -> Result<Self, TileFault> {
+        rest.check(self.vertex_count())?;
+        self.rest = rest;
+        Ok(self)
     }
 
     /// Number of vertices, and of edges.
@@ -179,15 +175,10 @@ impl YarnTile {
     pub fn area(&self) -> f64 {
         self.periods[0] * self.periods[1]
     }
-    /// Rest lengths of the edges \[m\].
+    /// What its yarns would be, each for itself.
     #[must_use]
-    pub fn rest_lengths(&self) -> &[f64] {
-        &self.rest_lengths
-    }
-    /// Sizes of the rest curvatures at the vertices \[–\].
-    #[must_use]
-    pub fn rest_curvatures(&self) -> &[f64] {
-        &self.rest_curvatures
+    pub fn rest(&self) -> &RestShape {
+        &self.rest
     }
     /// Number of yarns, counted once however many tiles one passes through before it repeats.
     #[must_use]
@@ -210,7 +201,7 @@ impl YarnTile {
     /// Length of yarn at rest that each vertex stands for: half of each edge at it \[m\].
     #[must_use]
     pub fn shares(&self) -> Vec<f64> {
-        let share = |edges: &[u32; 2]| edges.iter().map(|&edge| 0.5 * self.rest_lengths[edge as usize]).sum();
+        let share = |edges: &[u32; 2]| edges.iter().map(|&edge| 0.5 * self.rest.lengths[edge as usize]).sum();
         self.around.iter().map(share).collect()
     }
 
@@ -224,23 +215,10 @@ impl YarnTile {
         self.edges.iter().map(length).collect()
     }
 
-    /// Sizes of the curvatures `|κ|` at the vertices as they lie \[–\].
-    #[must_use]
-    pub fn curvatures(&self) -> Vec<f64> {
-        let curvature = |vertex: usize| {
-            let [a, b] = self.beside(vertex).map(|(v, shift)| self.image(v, shift));
-            let (e, f) = (sub(self.vertices[vertex], a), sub(b, self.vertices[vertex]));
-            let normal = cross(e, f);
-            let below = (dot(e, e) * dot(f, f)).sqrt() + dot(e, f);
-            2.0 * dot(normal, normal).sqrt() / below
-        };
-        (0..self.vertices.len()).map(curvature).collect()
-    }
-
-    /// The same tile at rest as it lies: no edge stretched, no vertex bent.
+    /// The same tile at rest as it lies: no edge stretched, no vertex bent, no yarn wound.
     #[must_use]
     pub fn at_rest_as_it_lies(&self) -> Self {
-        Self { rest_lengths: self.lengths(), rest_curvatures: self.curvatures(), ..self.clone() }
+        Self { rest: RestShape::of(self), ..self.clone() }
     }
 
     /// The same tile with other periods \[m\]: its yarns go along evenly, and are at rest as they then lie.
@@ -280,8 +258,8 @@ impl YarnTile {
         }
         let copies = counts[0] * counts[1];
         let periods = [0, 1].map(|axis| self.periods[axis] * counts[axis] as f64);
-        let (lengths, curvatures) = (self.rest_lengths.repeat(copies), self.rest_curvatures.repeat(copies));
-        Self::new(periods, self.radius, vertices, edges, lengths, curvatures).expect("copies of a tile make a tile")
+        let tile = Self::new(periods, self.radius, vertices, edges).expect("copies of a tile make a tile");
+        Self { rest: self.rest.repeated(copies), ..tile }
     }
 }
 
@@ -292,21 +270,20 @@ struct Written {
     radius: f64,
     vertices: Vec<[f64; 3]>,
     edges: Vec<Edge>,
-    rest_lengths: Vec<f64>,
-    rest_curvatures: Vec<f64>,
+    rest: RestShape,
 }
 
 impl From<YarnTile> for Written {
     fn from(tile: YarnTile) -> Self {
-        let YarnTile { periods, radius, vertices, edges, rest_lengths, rest_curvatures, .. } = tile;
-        Self { periods, radius, vertices, edges, rest_lengths, rest_curvatures }
+        let YarnTile { periods, radius, vertices, edges, rest, .. } = tile;
+        Self { periods, radius, vertices, edges, rest }
     }
 }
 
 impl TryFrom<Written> for YarnTile {
     type Error = TileFault;
     fn try_from(w: Written) -> Result<Self, TileFault> {
-        Self::new(w.periods, w.radius, w.vertices, w.edges, w.rest_lengths, w.rest_curvatures)
+        Self::new(w.periods, w.radius, w.vertices, w.edges)?.with_rest(w.rest)
     }
 }
 
@@ -365,7 +342,7 @@ mod tests {
         assert_eq!((tile.yarn_count(), doubled.yarn_count()), (4, 2 * 2 + 2 * 3));
         let (once, often) = (tile.lengths(), doubled.lengths());
         assert!(often.iter().enumerate().all(|(i, l)| (l - once[i % once.len()]).abs() < 1e-12));
-        let (once, often) = (tile.curvatures(), doubled.curvatures());
+        let (once, often) = (RestShape::of(&tile).curvatures, RestShape::of(&doubled).curvatures);
         assert!(often.iter().enumerate().all(|(i, l)| (l - once[i % once.len()]).abs() < 1e-9));
     }
 
@@ -375,7 +352,7 @@ mod tests {
         let remade = |change: &dyn Fn(&mut YarnTile)| {
             let mut t = good.clone();
             change(&mut t);
-            YarnTile::new(t.periods, t.radius, t.vertices, t.edges, t.rest_lengths, t.rest_curvatures)
+            YarnTile::new(t.periods, t.radius, t.vertices, t.edges)?.with_rest(t.rest)
         };
         assert_eq!(remade(&|_| {}), Ok(good.clone()));
         assert!(matches!(remade(&|t| t.periods[1] = 0.0), Err(TileFault::Size { .. })));
@@ -385,8 +362,8 @@ mod tests {
         assert!(matches!(remade(&|t| t.edges[1].ends[0] = 9), Err(TileFault::Edge { edge: 1, .. })));
         assert!(matches!(remade(&|t| t.edges[1].shift[0] = 90), Err(TileFault::Edge { edge: 1, .. })));
         assert!(matches!(remade(&|t| t.edges[1].ends[0] = 0), Err(TileFault::Fork { vertex: 0, beginning: 2, .. })));
-        assert!(matches!(remade(&|t| t.rest_lengths[3] = -1.0), Err(TileFault::Rest { index: 3, .. })));
-        assert!(matches!(remade(&|t| t.rest_curvatures[3] = f64::NAN), Err(TileFault::Rest { index: 3, .. })));
+        assert!(matches!(remade(&|t| t.rest.lengths[3] = -1.0), Err(TileFault::Rest { index: 3, .. })));
+        assert!(matches!(remade(&|t| t.rest.curvatures[3] = f64::NAN), Err(TileFault::Rest { index: 3, .. })));
         assert!(matches!(remade(&|t| t.vertices[1] = t.vertices[0]), Err(TileFault::Edge { edge: 0, .. })));
     }
 }

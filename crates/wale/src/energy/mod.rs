@@ -39,7 +39,7 @@ pub use load::Load;
 pub use membrane::{Membrane, MembraneStiffness};
 pub use obstacle_contact::ObstacleContact;
 pub use rates::Rate;
-pub use rod_bending::RodBending;
+pub use rod_bending::{RodBending, rod_curvature, rod_torsion};
 pub use rod_contact::{ContactPhase, ContactReading, RodContact};
 pub use rod_stretch::RodStretch;
 pub use self_contact::SelfContact;
