@@ -21,6 +21,7 @@ pub mod tile_equilibrium;
 pub mod tile_sensitivity;
 pub mod tile_stiffness;
 mod tile_system;
+mod weave_systems;
 pub mod workspace;
 
 pub use state::State;

@@ -1,10 +1,11 @@
 //! The stiffnesses of a fabric, of which its energy is a linear function, and the forces that each of them makes.
 
 use super::tile_system::bed;
+use super::weave_systems::Systems;
 use crate::energy::Foundation;
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
-use crate::model::{FabricCard, KnitCard, Network, Thickness, WovenCard, YarnCard, YarnRole, Yarns};
+use crate::model::{FabricCard, KnitCard, Network, Thickness, WovenCard, YarnCard, Yarns};
 
 /// A stiffness of a fabric: of its yarns or of its contacts. Knits have six, and weaves six of theirs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,39 +176,6 @@ fn in_proportion(yarn: &YarnCard, first: &YarnCard, stretch: f64, bending: f64) 
 /// A yarn's stiffness over that of the first.
 fn share(own: f64, first: f64) -> f64 {
     if first > 0.0 { own / first } else { 1.0 }
-}
-
-/// Which yarns a weave's warp and weft are of.
-struct Systems {
-    /// Role and yarn of every thread.
-    threads: Vec<(YarnRole, u8)>,
-    /// The yarn of the first end.
-    warp: Option<u8>,
-    /// That of the first pick whose yarn is not in the warp.
-    weft: Option<u8>,
-}
-
-impl Systems {
-    fn of(network: &Network) -> Self {
-        let threads = network.yarn_role.iter().copied().zip(network.yarn_kind.iter().copied()).collect();
-        let mut systems = Self { threads, warp: None, weft: None };
-        systems.warp = systems.threads.iter().find(|thread| thread.0 == YarnRole::Warp).map(|thread| thread.1);
-        systems.weft = systems.threads.iter().map(|thread| thread.1).find(|&kind| systems.in_weft(kind));
-        systems
-    }
-
-    fn in_warp(&self, kind: u8) -> bool {
-        self.threads.contains(&(YarnRole::Warp, kind))
-    }
-
-    /// In the weft, and not in the warp.
-    fn in_weft(&self, kind: u8) -> bool {
-        self.threads.contains(&(YarnRole::Weft, kind)) && !self.in_warp(kind)
-    }
-
-    fn kinds(&self) -> usize {
-        self.threads.iter().map(|&(_, kind)| usize::from(kind) + 1).max().unwrap_or(1)
-    }
 }
 
 /// Bending stiffness `k_b` \[N·m²\] and length `ℓ` \[m\] by which forces in a tile are measured: of its first yarn and of a loop, or of

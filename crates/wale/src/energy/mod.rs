@@ -2,6 +2,7 @@
 
 mod angle;
 pub mod bending;
+mod edge_turns;
 pub mod element;
 pub mod foundation;
 pub mod friction;
