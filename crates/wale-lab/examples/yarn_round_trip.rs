@@ -58,17 +58,17 @@ struct Fabric {
 }
 
 fn fabrics() -> Result<Vec<Fabric>, Failure> {
-    // Fibres slide past each other in a yarn, so that it bends far more easily than a rod. What holds it lies between nothing and the
-    // sevenfold of these that acrylic stockinette is fitted with.
+    // Fibres slide past each other in a yarn, so that it bends far more easily than a rod. Knits stick about half as hard as acrylic
+    // stockinette is fitted with.
     let knitted =
         |name, chart: &Chart, largest| Fabric { name, tile: knit(chart), largest, bending: 0.05, holding: 0.1 };
-    // Firm yarns in a firm weave: of softer ones the tile balances on a ridge, from which its threads snap to one side.
+    // Firm yarns in a firm weave, which stick so little that it shears, as weaves do, a fifth as hard as it stretches.
     let woven = |name, draft: &Draft| Fabric {
         name,
         tile: weave(draft),
         largest: [0.08, 0.15, 0.08],
         bending: 0.5,
-        holding: 0.4,
+        holding: 0.004,
     };
     Ok(vec![
         knitted("jersey", &Chart::stockinette(), [0.45, 0.35, 0.3]),

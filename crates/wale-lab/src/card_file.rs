@@ -217,7 +217,7 @@ impl CardFile {
 impl YarnCard {
     fn write(&self, text: &mut String) {
         text.push_str(
-            "\n# Its yarn in full contact [Sperl2022, Eqs. 5 to 7]; k_h is what holds it in the fabric.\n[yarn]\n",
+            "\n# Its yarn in full contact [Sperl2022, Eqs. 5 to 7]; k_h is how it sticks to yarns that it touches.\n[yarn]\n",
         );
         let units = ["N", "N", "", "N m^2", "m", "N/m", "Pa"];
         for ((name, value), unit) in RodParameter::NAMES.into_iter().zip(self.material.parameters()).zip(units) {

@@ -21,11 +21,10 @@ pub struct RodMaterial {
     pub contact: [ContactPhase; 2],
     /// How the printed contact energy is read.
     pub reading: ContactReading,
-    /// Stiffness `k_h` \[N/m²\] with which the fabric holds a piece of yarn where the coarse deformation takes it: what friction does
-    /// to yarns that stick.
+    /// Stiffness `k_h` \[N/m²\] with which yarns stick where they touch at rest: what friction does to yarns that do not slide.
     ///
     /// Differs from the paper: it has none, and a knit whose yarns slide freely begins to stretch with next to no force, which no
-    /// knit does that was measured. Test: `what_holds_a_yarn_is_a_spring`.
+    /// knit does that was measured. Test: `yarns_stick_where_they_touch`.
     pub holding: f64,
 }
 

@@ -16,6 +16,7 @@ mod rest;
 mod rest_shape;
 mod sensitivity;
 mod soundness;
+mod sticks;
 mod stress;
 mod system;
 #[cfg(test)]

@@ -191,6 +191,7 @@ impl TileSystem {
         self.add_stretch_border(&self.stretch, displacement, &mut border);
         self.add_stretch_border(&self.bending, displacement, &mut border);
         self.add_stretch_border(&self.contact, displacement, &mut border);
+        self.add_stretch_border(&self.stick, displacement, &mut border);
         border
     }
 
@@ -252,11 +253,13 @@ impl TileSystem {
             let wider = element.gradient_by_outer_radius(&q);
             self.add_work(stencil, &wider, motions, &mut work[RodParameter::OuterRadius as usize]);
         }
-        let (by_anchor, shares) = (self.anchor_by_parameters(), self.tile.shares());
+        for (element, stencil) in self.stick.elements.iter().zip(&self.stick.stencils) {
+            let force = element.gradient(&self.positions(stencil, displacement)).1;
+            let unit = force.map(|force| force / self.material.holding);
+            self.add_work(stencil, &unit, motions, &mut work[RodParameter::Holding as usize]);
+        }
+        let by_anchor = self.anchor_by_parameters();
         for (k, motion) in motions.iter().enumerate() {
-            let of_vertex = motion.vertices.as_chunks::<SLOTS>().0.iter().zip(displacement.as_chunks::<SLOTS>().0);
-            let held = of_vertex.zip(&shares).map(|((d, u), share)| share * (0..3).map(|i| d[i] * u[i]).sum::<f64>());
-            work[RodParameter::Holding as usize][k] += held.sum::<f64>();
             let pull: f64 = motion.vertices.iter().zip(displacement).map(|(d, u)| d * u).sum();
             work.iter_mut().zip(by_anchor).for_each(|(work, anchor)| work[k] += anchor * pull);
         }
@@ -287,9 +290,10 @@ impl TileSystem {
             sums[RodParameter::OuterContact as usize] += RodContact { phases, ..*element }.gradient(&q).0;
             sums[RodParameter::OuterRadius as usize] += element.energy_by_outer_radius(&q);
         }
-        let squares = displacement.as_chunks::<SLOTS>().0.iter().map(|u| u.iter().map(|u| u * u).sum::<f64>());
-        sums[RodParameter::Holding as usize] =
-            squares.zip(self.tile.shares()).map(|(square, share)| 0.5 * share * square).sum();
+        for (element, stencil) in self.stick.elements.iter().zip(&self.stick.stencils) {
+            let energy = element.gradient(&self.positions(stencil, displacement)).0;
+            sums[RodParameter::Holding as usize] += energy / self.material.holding;
+        }
         let square: f64 = displacement.iter().map(|u| u * u).sum();
         let by_anchor = self.anchor_by_parameters();
         sums.iter_mut().zip(by_anchor).for_each(|(sum, anchor)| *sum += 0.5 * anchor * square);

@@ -65,10 +65,7 @@ pub fn unsound(tile: &YarnTile) -> Option<Unsound> {
 /// other on a yarn are none.
 pub(super) fn distances(tile: &YarnTile, within: f64) -> Vec<(Pair, f64)> {
     let followers = Followers::new(tile, std::f64::consts::PI * tile.radius());
-    let segment = |edge: u32, shift: [i32; 2]| {
-        let e = tile.edges()[edge as usize];
-        [tile.image(e.ends[0], shift), tile.image(e.ends[1], [shift[0] + e.shift[0], shift[1] + e.shift[1]])]
-    };
+    let segment = |edge: u32, shift: [i32; 2]| tile.ends(edge, shift).map(|(vertex, shift)| tile.image(vertex, shift));
     let pairs = near_pairs(tile, &CoarseDeformation::REST, tile.vertices(), &followers, within);
     pairs
         .into_iter()

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use wale::energy::{Element, RodBending, RodContact, RodStretch};
+use wale::energy::{Element, RodBending, RodContact, RodStick, RodStretch};
 use wale_numerics::block_matrix::{BLOCK, SLOTS};
 use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::check::Local;
@@ -15,6 +15,7 @@ use super::constraints::Constraints;
 use super::kinds::{Image, Kind, NOWHERE, pull_back};
 use super::material::RodMaterial;
 use super::neighbours::{Followers, near_pairs};
+use super::sticks::sticks;
 use super::tile::YarnTile;
 
 /// A tile's elements over its unknowns: displacements `ũ` in blocks of five slots, of which three are used, and the compression.
@@ -26,6 +27,8 @@ pub struct TileSystem {
     pub stretch: Kind<RodStretch, 2>,
     pub bending: Kind<RodBending, 4>,
     pub contact: Kind<RodContact, 4>,
+    /// Yarns that touch at rest and stick.
+    pub stick: Kind<RodStick, 4>,
     pub second: ConstrainedSystem,
     /// Gradient by the displacements, and by the compression \[N, J\].
     pub gradient: Vec<f64>,
@@ -42,6 +45,10 @@ pub struct TileSystem {
     farthest: [i32; 2],
 }
 
+fn image((vertex, shift): (u32, [i32; 2])) -> Image {
+    Image { vertex, shift }
+}
+
 /// Distance beyond the reach of contacts within which pairs are kept, in reaches.
 const MARGIN: f64 = 0.25;
 
@@ -56,11 +63,9 @@ impl TileSystem {
         anchor: f64,
         free_compression: bool,
     ) -> Result<Self, CholeskyError> {
-        let own = |vertex: u32| Image { vertex, shift: [0, 0] };
-        let image = |(vertex, shift): (u32, [i32; 2])| Image { vertex, shift };
-        let stretch = Kind::new(tile.edges.iter().zip(&tile.rest.lengths).map(|(edge, &rest_length)| {
+        let stretch = Kind::new((0..).zip(&tile.rest.lengths).map(|(edge, &rest_length)| {
             let RodMaterial { soft_stretch: soft, stiff_stretch: stiff, onset, .. } = *material;
-            (RodStretch { soft, stiff, onset, rest_length }, [own(edge.ends[0]), image((edge.ends[1], edge.shift))])
+            (RodStretch { soft, stiff, onset, rest_length }, tile.ends(edge, [0, 0]).map(image))
         }));
         let bending = Kind::new(tile.edges.iter().enumerate().map(|(index, edge)| {
             let [first, last] = edge.ends;
@@ -74,7 +79,7 @@ impl TileSystem {
             let [before, _] = tile.beside(first as usize);
             let [_, (after, beyond)] = tile.beside(last as usize);
             let beyond = [edge.shift[0] + beyond[0], edge.shift[1] + beyond[1]];
-            (element, [image(before), own(first), image((last, edge.shift)), image((after, beyond))])
+            (element, [before, (first, [0, 0]), (last, edge.shift), (after, beyond)].map(image))
         }));
         let constraints = Constraints::new(tile);
         let pattern = Arc::new(BlockPattern::from_pairs(tile.vertex_count(), []));
@@ -86,10 +91,11 @@ impl TileSystem {
             stretch,
             bending,
             contact: Kind::new(std::iter::empty()),
+            stick: sticks(tile, material),
             second,
             gradient: vec![0.0; SLOTS * tile.vertex_count()],
             compression_gradient: 0.0,
-            holding: Self::holding(tile, material.holding, anchor),
+            holding: Self::holding(tile, anchor),
             anchor,
             material: *material,
             free_compression,
@@ -164,21 +170,18 @@ impl TileSystem {
         let tile = &self.tile;
         let (phases, reading) = (self.material.contact, self.material.reading);
         self.contact = Kind::new(pairs.iter().map(|pair| {
-            let ends = |edge: u32, shift: [i32; 2]| {
-                let e = tile.edges[edge as usize];
-                let to = [shift[0] + e.shift[0], shift[1] + e.shift[1]];
-                [Image { vertex: e.ends[0], shift }, Image { vertex: e.ends[1], shift: to }]
-            };
-            let ([a, b], [c, d]) = (ends(pair.first, [0, 0]), ends(pair.second, pair.shift));
+            let [a, b] = tile.ends(pair.first, [0, 0]).map(image);
+            let [c, d] = tile.ends(pair.second, pair.shift).map(image);
             let rest_area = tile.rest.lengths[pair.first as usize] * tile.rest.lengths[pair.second as usize];
             (RodContact { phases, reading, rest_area }, [a, b, c, d])
         }));
         let pattern = Arc::clone(self.second.matrix.pattern());
-        let placed = self.stretch.place(&pattern) && self.bending.place(&pattern) && self.contact.place(&pattern);
+        let placed = self.place(&pattern);
         if !placed {
-            let couples = self.stretch.couples().chain(self.bending.couples()).chain(self.contact.couples());
+            let of_yarn = self.stretch.couples().chain(self.bending.couples());
+            let couples = of_yarn.chain(self.contact.couples()).chain(self.stick.couples());
             let pattern = Arc::new(BlockPattern::from_pairs(self.tile.vertex_count(), couples));
-            let found = self.stretch.place(&pattern) && self.bending.place(&pattern) && self.contact.place(&pattern);
+            let found = self.place(&pattern);
             assert!(found, "the pattern was made of these couples");
             self.second = Self::matrix(pattern, &self.constraints, self.free_compression)?;
         }
@@ -186,11 +189,19 @@ impl TileSystem {
         Ok(true)
     }
 
+    fn place(&mut self, pattern: &Arc<BlockPattern>) -> bool {
+        self.stretch.place(pattern)
+            && self.bending.place(pattern)
+            && self.contact.place(pattern)
+            && self.stick.place(pattern)
+    }
+
     /// Energy of the tile \[J\].
     pub fn energy(&self, displacement: &[f64]) -> f64 {
         self.energy_of(&self.stretch, displacement)
             + self.energy_of(&self.bending, displacement)
             + self.energy_of(&self.contact, displacement)
+            + self.energy_of(&self.stick, displacement)
             + self.energy_of_holding(displacement)
     }
 
@@ -198,13 +209,9 @@ impl TileSystem {
         0.5 * self.holding.iter().zip(displacement).map(|(k, u)| k * u * u).sum::<f64>()
     }
 
-    /// Stiffness of each slot's spring: a stiffness a length of yarn \[N/m²\] times the vertex's share of it, and a stiffness \[N/m\].
-    fn holding(tile: &YarnTile, by_length: f64, each: f64) -> Vec<f64> {
-        let mut holding = vec![0.0; SLOTS * tile.vertex_count()];
-        for (vertex, share) in tile.shares().into_iter().enumerate() {
-            holding[SLOTS * vertex..SLOTS * vertex + 3].fill(by_length * share + each);
-        }
-        holding
+    /// Stiffness \[N/m\] of each slot's spring.
+    fn holding(tile: &YarnTile, each: f64) -> Vec<f64> {
+        (0..SLOTS * tile.vertex_count()).map(|slot| if slot % SLOTS < 3 { each } else { 0.0 }).collect()
     }
 
     fn energy_of<E: Element<N>, const N: usize, const K: usize>(&self, kind: &Kind<E, K>, displacement: &[f64]) -> f64 {
@@ -240,22 +247,24 @@ impl TileSystem {
         self.gradient.fill(0.0);
         self.compression_gradient = 0.0;
         self.second.clear();
-        let (stretch, bending, contact) = self.take();
+        let (stretch, bending, contact, stick) = self.take();
         let energy = self.add_kind(&stretch, displacement, convexity)
             + self.add_kind(&bending, displacement, convexity)
-            + self.add_kind(&contact, displacement, convexity);
-        (self.stretch, self.bending, self.contact) = (stretch, bending, contact);
+            + self.add_kind(&contact, displacement, convexity)
+            + self.add_kind(&stick, displacement, convexity);
+        (self.stretch, self.bending, self.contact, self.stick) = (stretch, bending, contact, stick);
         self.gradient.iter_mut().zip(&self.holding).zip(displacement).for_each(|((g, k), u)| *g += k * u);
         self.second.add_diagonal(&self.holding);
         energy + self.energy_of_holding(displacement)
     }
 
     /// The elements, moved out while the rest of the system is written to.
-    fn take(&mut self) -> (Kind<RodStretch, 2>, Kind<RodBending, 4>, Kind<RodContact, 4>) {
+    fn take(&mut self) -> (Kind<RodStretch, 2>, Kind<RodBending, 4>, Kind<RodContact, 4>, Kind<RodStick, 4>) {
         (
             std::mem::replace(&mut self.stretch, Kind::new(std::iter::empty())),
             std::mem::replace(&mut self.bending, Kind::new(std::iter::empty())),
             std::mem::replace(&mut self.contact, Kind::new(std::iter::empty())),
+            std::mem::replace(&mut self.stick, Kind::new(std::iter::empty())),
         )
     }
 
@@ -323,6 +332,7 @@ impl TileSystem {
         self.forces_of(&self.stretch, displacement, &mut visit);
         self.forces_of(&self.bending, displacement, &mut visit);
         self.forces_of(&self.contact, displacement, &mut visit);
+        self.forces_of(&self.stick, displacement, &mut visit);
     }
 
     fn forces_of<E: Element<N>, const N: usize, const K: usize>(

@@ -192,6 +192,12 @@ impl YarnTile {
         [x + f64::from(shift[0]) * self.periods[0], y + f64::from(shift[1]) * self.periods[1], z]
     }
 
+    /// The vertices at the ends of an edge that begins so many periods away, and in which tiles they lie.
+    pub(super) fn ends(&self, edge: u32, shift: [i32; 2]) -> [(u32, [i32; 2]); 2] {
+        let Edge { ends, shift: across } = self.edges[edge as usize];
+        [(ends[0], shift), (ends[1], [shift[0] + across[0], shift[1] + across[1]])]
+    }
+
     /// The vertices before and after one, and in which tiles.
     pub(super) fn beside(&self, vertex: usize) -> [(u32, [i32; 2]); 2] {
         let [before, after] = self.around[vertex].map(|edge| self.edges[edge as usize]);
