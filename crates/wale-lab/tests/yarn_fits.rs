@@ -203,7 +203,7 @@ fn yarns_that_are_too_soft_in_everything_are_off_by_one_factor() {
 }
 
 #[test]
-fn rest_shapes_of_yarns_that_grow_change_little_with_the_material() {
+fn rest_shapes_change_little_with_the_material() {
     let scene = Scene::from_text(&text_of_preset(PresetName::WorstedWool), "preset.toml").unwrap();
     let tile = tile_of_chart(&Chart::rib(1, 1).unwrap(), &scene.yarns, scene.fabric.knit().unwrap()).unwrap();
     let problem = problem(tile, Vec::new(), Vec::new(), Some(STIFFNESS), Ablation::default());
@@ -222,8 +222,11 @@ fn rest_shapes_of_yarns_that_grow_change_little_with_the_material() {
         let pairs = a.vertices().iter().zip(b.vertices());
         pairs.map(|(a, b)| (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max) / radius
     };
-    let (grown, at_once) = (apart(8), apart(0));
-    assert!(grown > 0.0 && grown < 0.01 && at_once > 10.0 * grown, "{grown} {at_once}");
+    // Numbers that differ by half a per cent; yarns of which only sizes of curvatures are compared came to rest a radius apart.
+    for growing_rounds in [0, 8] {
+        let moved = apart(growing_rounds);
+        assert!(moved > 0.0 && moved < 0.01, "{growing_rounds}: {moved}");
+    }
 }
 
 #[test]

@@ -250,7 +250,7 @@ pub fn problems(parts: Vec<Part>, stiffest: Option<f64>, ablation: Ablation) -> 
         rest_shapes: !ablation.no_rest_shapes,
         // Differs from the paper: no rounds that are cut short, at the few iterations of which rest shapes jump as numbers change, so
         // that no derivative leads to the bottom of a valley; yarns that grow, instead. Tests:
-        // `a_yarn_is_found_again_from_its_curves`, `rest_shapes_of_yarns_that_grow_change_little_with_the_material`.
+        // `a_yarn_is_found_again_from_its_curves`, `rest_shapes_change_little_with_the_material`.
         rest: RestShapeSettings { early_rounds: 0, growing_rounds: 8, late_rounds: 22, ..RestShapeSettings::default() },
         pull: PullSettings::default(),
     };

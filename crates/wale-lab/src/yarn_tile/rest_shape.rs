@@ -17,8 +17,8 @@ pub struct RestShapeSettings {
     pub early_iterations: usize,
     /// Resets after equilibria of yarns whose outer contact grows from one to the next, from nothing but the inner one.
     ///
-    /// Yarns that are pushed from each other all at once go this way for one material and that way for another that is hardly
-    /// different; if they grow, they go the same way. Test: `rest_shapes_of_yarns_that_grow_change_little_with_the_material`.
+    /// Yarns that are pushed from each other all at once can go this way for one material and that way for another that is hardly
+    /// different; if they grow, they go the same way. Test: `rest_shapes_change_little_with_the_material`.
     pub growing_rounds: usize,
     /// Resets after equilibria.
     pub late_rounds: usize,
