@@ -58,16 +58,20 @@ impl RestShape {
     /// # Errors
     /// [`TileFault::Count`] or [`TileFault::Rest`].
     pub(super) fn check(&self, count: usize) -> Result<(), TileFault> {
-        let whole = |_: f64| true;
-        let lists: [(&str, &str, &[f64], fn(f64) -> bool); 3] = [
-            ("rest lengths", "length", &self.lengths, |value| value > 0.0),
-            ("rest curvatures", "curvature", &self.curvatures, |value| value >= 0.0),
-            ("rest torsions", "torsion", &self.torsions, whole),
+        let lists = [
+            ("rest lengths", "length", &self.lengths),
+            ("rest curvatures", "curvature", &self.curvatures),
+            ("rest torsions", "torsion", &self.torsions),
         ];
-        for (all, what, values, fits) in lists {
+        for (all, what, values) in lists {
             if values.len() != count {
                 return Err(TileFault::Count { what: all, found: values.len(), wanted: count });
             }
+            let fits = |value: f64| match what {
+                "length" => value > 0.0,
+                "curvature" => value >= 0.0,
+                _ => true,
+            };
             if let Some(index) = values.iter().position(|&value| !value.is_finite() || !fits(value)) {
                 return Err(TileFault::Rest { what, index, value: values[index] });
             }
