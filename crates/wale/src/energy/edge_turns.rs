@@ -9,7 +9,7 @@ use super::element::point;
 pub(super) struct EdgeTurns {
     /// `t₀·t₁`, `t₁·t₂`, `t₀·t₂` and `t₀·(t₁×t₂)`.
     pub values: [f64; 4],
-    /// Edges that each of them knows.
+    /// Lengths of the edges \[m\].
     lengths: [f64; 3],
     /// Two unit vectors across each edge, and that along it.
     frames: [[[f64; 3]; 3]; 3],

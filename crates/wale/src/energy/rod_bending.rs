@@ -12,18 +12,20 @@ use super::element::{Element, point};
 ///
 /// `V = min_ϑ ½ Σ k_b |κ − R(ϑ) κ̄|²/(L̄ + L̄′)`, `κ = 2 e×f/(|e||f| + e·f)`, over both ends       [Sperl2022, Eq. 6]
 ///
-/// with `e` and `f` the edges before and after an end, `L̄`, `L̄′` their rest lengths and `R(ϑ)` a turn about the edge. `|κ| = 2 tan(θ/2)` with the
-/// turning angle `θ`; `k_b` is the continuum's `EI`. A vertex belongs to two edges, with half of its bending each. Local coordinates: the vertex before the edge, both ends, the vertex after it, `x₀ x₁ x₂ x₃` \[m\].
-/// Undefined where an edge has no length.
+/// with `e` and `f` the edges before and after an end, `L̄`, `L̄′` their rest lengths and `R(ϑ)` a turn about the edge.
+/// `|κ| = 2 tan(θ/2)` with the turning angle `θ`; `k_b` is the continuum's `EI`. A vertex belongs to two edges, with half of its
+/// bending each. Local coordinates: the vertex before the edge, both ends, the vertex after it, `x₀ x₁ x₂ x₃` \[m\]. Undefined
+/// where an edge has no length.
 ///
-/// Both curvatures lie in the plane across the edge. With `z` and `z̄` for them as complex numbers there and `a = k_b/(L̄ + L̄′)`, the best turn leaves
-/// `½ Σ a (|z|² + |z̄|²) − |A|`, `A = Σ a z z̄*`, and of a rest shape only sizes and the torsion, the angle between both `κ̄`, remain.
-/// `|A|` has a kink where `A = 0`, at the straight yarn; `√((|A|² + ε²)(S² + ε²))/S`, with `S = Σ a κ̄²` and `ε = S/20`, has none and rests at the same shape.
+/// Both curvatures lie in the plane across the edge. With `z` and `z̄` for them as complex numbers there and `a = k_b/(L̄ + L̄′)`,
+/// the best turn leaves `½ Σ a (|z|² + |z̄|²) − |A|`, `A = Σ a z z̄*`, and of a rest shape only sizes and the torsion, the angle
+/// between both `κ̄`, remain. `|A|` has a kink where `A = 0`, at the straight yarn; `√((|A|² + ε²)(S² + ε²))/S`, with `S = Σ a κ̄²`
+/// and `ε = S/20`, has none and rests at the same shape.
 ///
 /// Differs from the paper: it does not say which frame carries `κ̄`, and its yarn has no twist. In every frame that turns with
-/// the two edges at a vertex `κ` has one direction, so that only sizes would be compared; but then a bent yarn that is pulled straight may bend to
-/// the left at one vertex and to the right at the next to keep its curvature, which no yarn does. Cross-sections here are those of edges: they turn freely, each as a whole.
-/// A rest curvature transported from the rest pose would not be the same in a turned fabric. Tests: `cross_sections_turn_as_they_like_best`,
+/// the two edges at a vertex `κ` has one direction, so that only sizes would be compared; but then a bent yarn that is pulled
+/// straight may bend to the left at one vertex and to the right at the next to keep its curvature, which no yarn does.
+/// Cross-sections here are those of edges: they turn freely, each as a whole. A rest curvature transported from the rest pose would not be the same in a turned fabric. Tests: `cross_sections_turn_as_they_like_best`,
 /// `bending_one_end_the_other_way_costs`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodBending {
