@@ -13,6 +13,12 @@ pub struct Image {
     pub shift: [i32; 2],
 }
 
+impl From<(u32, [i32; 2])> for Image {
+    fn from((vertex, shift): (u32, [i32; 2])) -> Self {
+        Self { vertex, shift }
+    }
+}
+
 /// Elements of one kind, the `K` vertices each reads, and where in the matrix its blocks go.
 #[derive(Clone, Debug)]
 pub struct Kind<E, const K: usize> {

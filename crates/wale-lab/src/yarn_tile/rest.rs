@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use wale::energy::{rod_curvature, rod_torsion};
-use wale_numerics::jet::vector3::{dot, sub};
+use wale_numerics::jet::vector3::dot;
 
 use super::tile::{Edge, TileFault, YarnTile};
 
@@ -21,8 +21,7 @@ impl RestShape {
     /// The shape of a tile as it lies.
     #[must_use]
     pub fn of(tile: &YarnTile) -> Self {
-        let along = |edge: &Edge| sub(tile.image(edge.ends[1], edge.shift), tile.image(edge.ends[0], [0, 0]));
-        let edges: Vec<[f64; 3]> = tile.edges.iter().map(along).collect();
+        let edges: Vec<[f64; 3]> = tile.edge_vectors().collect();
         let bends: Vec<[f64; 3]> = tile
             .around
             .iter()

@@ -22,7 +22,7 @@ pub fn sticks(tile: &YarnTile, material: &RodMaterial) -> Kind<RodStick, 4> {
     Kind::new(distances(tile, within).into_iter().map(|(pair, distance)| {
         let [a, b] = tile.ends(pair.first, [0, 0]);
         let [c, d] = tile.ends(pair.second, pair.shift);
-        let stencil = [a, b, c, d].map(|(vertex, shift)| Image { vertex, shift });
+        let stencil = [a, b, c, d].map(Image::from);
         let mut q = [0.0; 12];
         for (x, image) in q.as_chunks_mut::<3>().0.iter_mut().zip(stencil) {
             *x = tile.image(image.vertex, image.shift);

@@ -33,9 +33,9 @@ pub struct TileSystem {
     /// Gradient by the displacements, and by the compression \[N, J\].
     pub gradient: Vec<f64>,
     pub compression_gradient: f64,
-    /// Stiffness of the springs that hold each slot of `ũ` \[N/m\], and its part that [`super::EquilibriumSettings::anchor`] asks for.
-    holding: Vec<f64>,
+    /// Stiffness of the spring that holds each vertex \[N/m\], and of each slot of `ũ`.
     pub anchor: f64,
+    anchors: Vec<f64>,
     pub material: RodMaterial,
     followers: Followers,
     free_compression: bool,
@@ -45,15 +45,11 @@ pub struct TileSystem {
     farthest: [i32; 2],
 }
 
-fn image((vertex, shift): (u32, [i32; 2])) -> Image {
-    Image { vertex, shift }
-}
-
 /// Distance beyond the reach of contacts within which pairs are kept, in reaches.
 const MARGIN: f64 = 0.25;
 
 impl TileSystem {
-    /// `anchor` \[N/m\] holds every vertex, beside what the material holds it with.
+    /// `anchor` \[N/m\] holds every vertex.
     ///
     /// # Errors
     /// If the system is too large.
@@ -65,7 +61,7 @@ impl TileSystem {
     ) -> Result<Self, CholeskyError> {
         let stretch = Kind::new((0..).zip(&tile.rest.lengths).map(|(edge, &rest_length)| {
             let RodMaterial { soft_stretch: soft, stiff_stretch: stiff, onset, .. } = *material;
-            (RodStretch { soft, stiff, onset, rest_length }, tile.ends(edge, [0, 0]).map(image))
+            (RodStretch { soft, stiff, onset, rest_length }, tile.ends(edge, [0, 0]).map(Image::from))
         }));
         let bending = Kind::new(tile.edges.iter().enumerate().map(|(index, edge)| {
             let [first, last] = edge.ends;
@@ -79,7 +75,7 @@ impl TileSystem {
             let [before, _] = tile.beside(first as usize);
             let [_, (after, beyond)] = tile.beside(last as usize);
             let beyond = [edge.shift[0] + beyond[0], edge.shift[1] + beyond[1]];
-            (element, [before, (first, [0, 0]), (last, edge.shift), (after, beyond)].map(image))
+            (element, [before, (first, [0, 0]), (last, edge.shift), (after, beyond)].map(Image::from))
         }));
         let constraints = Constraints::new(tile);
         let pattern = Arc::new(BlockPattern::from_pairs(tile.vertex_count(), []));
@@ -95,8 +91,8 @@ impl TileSystem {
             second,
             gradient: vec![0.0; SLOTS * tile.vertex_count()],
             compression_gradient: 0.0,
-            holding: Self::holding(tile, anchor),
             anchor,
+            anchors: Self::anchors(tile, anchor),
             material: *material,
             free_compression,
             searched: None,
@@ -170,8 +166,8 @@ impl TileSystem {
         let tile = &self.tile;
         let (phases, reading) = (self.material.contact, self.material.reading);
         self.contact = Kind::new(pairs.iter().map(|pair| {
-            let [a, b] = tile.ends(pair.first, [0, 0]).map(image);
-            let [c, d] = tile.ends(pair.second, pair.shift).map(image);
+            let [a, b] = tile.ends(pair.first, [0, 0]).map(Image::from);
+            let [c, d] = tile.ends(pair.second, pair.shift).map(Image::from);
             let rest_area = tile.rest.lengths[pair.first as usize] * tile.rest.lengths[pair.second as usize];
             (RodContact { phases, reading, rest_area }, [a, b, c, d])
         }));
@@ -202,15 +198,15 @@ impl TileSystem {
             + self.energy_of(&self.bending, displacement)
             + self.energy_of(&self.contact, displacement)
             + self.energy_of(&self.stick, displacement)
-            + self.energy_of_holding(displacement)
+            + self.energy_of_anchors(displacement)
     }
 
-    fn energy_of_holding(&self, displacement: &[f64]) -> f64 {
-        0.5 * self.holding.iter().zip(displacement).map(|(k, u)| k * u * u).sum::<f64>()
+    fn energy_of_anchors(&self, displacement: &[f64]) -> f64 {
+        0.5 * self.anchors.iter().zip(displacement).map(|(k, u)| k * u * u).sum::<f64>()
     }
 
     /// Stiffness \[N/m\] of each slot's spring.
-    fn holding(tile: &YarnTile, each: f64) -> Vec<f64> {
+    fn anchors(tile: &YarnTile, each: f64) -> Vec<f64> {
         (0..SLOTS * tile.vertex_count()).map(|slot| if slot % SLOTS < 3 { each } else { 0.0 }).collect()
     }
 
@@ -253,9 +249,9 @@ impl TileSystem {
             + self.add_kind(&contact, displacement, convexity)
             + self.add_kind(&stick, displacement, convexity);
         (self.stretch, self.bending, self.contact, self.stick) = (stretch, bending, contact, stick);
-        self.gradient.iter_mut().zip(&self.holding).zip(displacement).for_each(|((g, k), u)| *g += k * u);
-        self.second.add_diagonal(&self.holding);
-        energy + self.energy_of_holding(displacement)
+        self.gradient.iter_mut().zip(&self.anchors).zip(displacement).for_each(|((g, k), u)| *g += k * u);
+        self.second.add_diagonal(&self.anchors);
+        energy + self.energy_of_anchors(displacement)
     }
 
     /// The elements, moved out while the rest of the system is written to.

@@ -349,7 +349,7 @@ fn woven_yarns_that_are_pulled_straight_do_not_zigzag() {
     let touching = contact_radius(&drawn);
     let rod = RodMaterial { reading: ContactReading::Barrier, ..RodMaterial::solid_rod(touching, 1.0, 0.0) };
     let bending = 0.5 * 25.0 * touching * touching;
-    let holding = 0.4 * bending / touching.powi(4);
+    let holding = 0.004 * bending / touching.powi(4);
     let material = rod.with_parameters([8.0, 100.0, 0.05, bending, 1.05 * touching, 5.0 / touching, holding]);
     let rests =
         RestShapeSettings { early_rounds: 0, growing_rounds: 8, late_rounds: 10, ..RestShapeSettings::default() };

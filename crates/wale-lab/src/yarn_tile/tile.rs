@@ -204,21 +204,15 @@ impl YarnTile {
         [(before.ends[0], before.shift.map(|s| -s)), (after.ends[1], after.shift)]
     }
 
-    /// Length of yarn at rest that each vertex stands for: half of each edge at it \[m\].
-    #[must_use]
-    pub fn shares(&self) -> Vec<f64> {
-        let share = |edges: &[u32; 2]| edges.iter().map(|&edge| 0.5 * self.rest.lengths[edge as usize]).sum();
-        self.around.iter().map(share).collect()
-    }
-
     /// Lengths of the edges as they lie \[m\].
     #[must_use]
     pub fn lengths(&self) -> Vec<f64> {
-        let length = |edge: &Edge| {
-            let d = sub(self.image(edge.ends[1], edge.shift), self.image(edge.ends[0], [0, 0]));
-            dot(d, d).sqrt()
-        };
-        self.edges.iter().map(length).collect()
+        self.edge_vectors().map(|d| dot(d, d).sqrt()).collect()
+    }
+
+    /// From the first to the last vertex of each edge as it lies \[m\].
+    pub(super) fn edge_vectors(&self) -> impl Iterator<Item = [f64; 3]> {
+        self.edges.iter().map(|edge| sub(self.image(edge.ends[1], edge.shift), self.image(edge.ends[0], [0, 0])))
     }
 
     /// The same tile at rest as it lies: no edge stretched, no vertex bent, no yarn wound.

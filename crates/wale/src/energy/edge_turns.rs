@@ -49,7 +49,7 @@ impl EdgeTurns {
         out
     }
 
-    /// Adds second derivatives of the products, times a factor each, by turns of two different edges; of one edge alone they follow from the
+    /// Adds second derivatives of the products, times a factor each, by turns of two edges; those of one edge alone follow from the
     /// products, which are linear in it.
     pub fn add_second(&self, factors: &[f64; 4], matrix: &mut [[f64; 6]; 6]) {
         let t = self.frames.map(|frame| frame[2]);

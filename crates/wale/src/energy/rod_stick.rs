@@ -10,11 +10,12 @@ use super::element::{Element, point};
 ///
 /// `V = ½ k Σ (Δ·t − p̄)²`, `Δ = ½(x₀ + x₁) − ½(x₂ + x₃)`, over the unit vectors `t` along both edges
 ///
-/// with `p̄` what `Δ·t` is at rest. Edges that roll over each other, or are turned together, store nothing. Local coordinates: the ends of one
-/// edge and of the other, `x₀ x₁ x₂ x₃` \[m\]. Undefined where an edge has no length.
+/// with `p̄` what `Δ·t` is at rest. Edges that roll over each other, or are turned together, store nothing. Local coordinates: the
+/// ends of one edge and of the other, `x₀ x₁ x₂ x₃` \[m\]. Undefined where an edge has no length.
 ///
-/// Differs from the paper: its yarns slide freely. Friction lets go in the end, and this does not; a spring that lets go after one radius of sliding fits
-/// measured knits worse, which stiffen as they stretch. Test in the lab: `yarns_stick_where_they_touch`.
+/// Differs from the paper: its yarns slide freely. Friction lets go in the end, and this does not; a spring that lets go after one
+/// radius of sliding fits measured knits worse, which stiffen as they stretch. Tests: `sliding_costs_and_rolling_does_not`, and
+/// `yarns_stick_where_they_touch` in the lab.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RodStick {
     /// Stiffness `k` \[N/m\].
@@ -26,13 +27,14 @@ pub struct RodStick {
 /// How far the middle of the second of two edges lies behind that of the first, along each of them \[m\].
 #[must_use]
 pub fn stick_offsets<T: Real>(q: &[T; 12]) -> [T; 2] {
-    let half = T::constant(0.5);
-    let middles = [0, 6].map(|start| scale(add(point(q, start), point(q, start + 3)), half));
-    let between = sub(middles[0], middles[1]);
-    [0, 6].map(|start| {
-        let edge = sub(point(q, start + 3), point(q, start));
-        dot(between, edge) / dot(edge, edge).sqrt()
-    })
+    let (between, edges) = vectors(q);
+    edges.map(|edge| dot(between, edge) / dot(edge, edge).sqrt())
+}
+
+/// The vector between the middles of two edges, and both edges.
+fn vectors<T: Real>(q: &[T; 12]) -> ([T; 3], [[T; 3]; 2]) {
+    let [first, second] = [0, 6].map(|start| scale(add(point(q, start), point(q, start + 3)), T::constant(0.5)));
+    (sub(first, second), [0, 6].map(|start| sub(point(q, start + 3), point(q, start))))
 }
 
 /// An offset along one edge: its derivatives by the vector between the middles and by the edge.
@@ -92,9 +94,8 @@ impl Offset {
 
 impl RodStick {
     fn offsets(q: &[f64; 12]) -> [Offset; 2] {
-        let middles = [0, 6].map(|start| scale(add(point(q, start), point(q, start + 3)), 0.5));
-        let between = sub(middles[0], middles[1]);
-        [0, 6].map(|start| Offset::new(between, sub(point(q, start + 3), point(q, start))))
+        let (between, edges) = vectors(q);
+        edges.map(|edge| Offset::new(between, edge))
     }
 }
 
