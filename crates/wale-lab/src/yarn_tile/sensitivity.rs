@@ -1,69 +1,16 @@
 //! How stress and compression of a tile in equilibrium follow the numbers of its material.
 
-use wale::energy::{ContactPhase, Element, RodBending, RodContact, RodStretch};
+use serde::{Deserialize, Serialize};
 use wale_numerics::block_matrix::SLOTS;
 
-use serde::{Deserialize, Serialize};
-
-use super::coarse::{CoarseDeformation, times};
+use super::coarse::CoarseDeformation;
+use super::elements::MOST_VERTICES;
 use super::equilibrium::{EquilibriumSettings, TileError, TileSolver};
-use super::kinds::Image;
+use super::kinds::{Frame, Image};
 use super::material::RodMaterial;
+use super::parameters::RodParameter;
 use super::system::TileSystem;
 use super::tile::YarnTile;
-
-/// A number of a material that a fit may change.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RodParameter {
-    /// `k_s1` \[N\].
-    SoftStretch,
-    /// `k_s2` \[N\].
-    StiffStretch,
-    /// `ε̄` \[–\].
-    Onset,
-    /// `k_b` \[N·m²\].
-    Bending,
-    /// `R₁` \[m\].
-    OuterRadius,
-    /// `k_c1` \[J/m²\].
-    OuterContact,
-    /// `k_h` \[N/m²\].
-    Holding,
-}
-
-impl RodParameter {
-    /// Number of them.
-    pub const COUNT: usize = 7;
-    /// All, in the order of arrays.
-    pub const ALL: [Self; Self::COUNT] = [
-        Self::SoftStretch,
-        Self::StiffStretch,
-        Self::Onset,
-        Self::Bending,
-        Self::OuterRadius,
-        Self::OuterContact,
-        Self::Holding,
-    ];
-    /// What they are called in files, in the same order.
-    pub const NAMES: [&'static str; Self::COUNT] = ["k_s1", "k_s2", "onset", "k_b", "R_1", "k_c1", "k_h"];
-}
-
-impl RodMaterial {
-    /// The numbers that a fit may change, in the order of [`RodParameter::ALL`].
-    #[must_use]
-    pub fn parameters(&self) -> [f64; RodParameter::COUNT] {
-        let ContactPhase { radius, stiffness } = self.contact[0];
-        [self.soft_stretch, self.stiff_stretch, self.onset, self.bending, radius, stiffness, self.holding]
-    }
-
-    /// The same material with these numbers.
-    #[must_use]
-    pub fn with_parameters(&self, parameters: [f64; RodParameter::COUNT]) -> Self {
-        let [soft_stretch, stiff_stretch, onset, bending, radius, stiffness, holding] = parameters;
-        let contact = [ContactPhase { radius, stiffness }, self.contact[1]];
-        Self { soft_stretch, stiff_stretch, onset, bending, contact, reading: self.reading, holding }
-    }
-}
 
 /// Derivatives of what a stretch test measures, through equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,9 +66,8 @@ struct Motion {
 }
 
 impl Motion {
-    fn of(&self, system: &TileSystem, image: Image) -> [f64; 3] {
-        let x = system.tile.image(image.vertex, image.shift);
-        let [a, b] = times(&self.plane, [x[0], x[1]]);
+    fn of(&self, frame: &Frame<'_>, image: Image) -> [f64; 3] {
+        let [a, b] = frame.carried(&self.plane, image);
         let u = &self.vertices[SLOTS * image.vertex as usize..];
         [a + u[0], b + u[1], u[2]]
     }
@@ -187,76 +133,42 @@ impl TileSolver {
 impl TileSystem {
     /// `∂²W/∂ũ∂s`, and `∂²W/∂c∂s`, of a flat tile.
     fn stretch_border(&self, displacement: &[f64]) -> (Vec<f64>, f64) {
-        let mut border = (vec![0.0; displacement.len()], 0.0);
-        self.add_stretch_border(&self.stretch, displacement, &mut border);
-        self.add_stretch_border(&self.bending, displacement, &mut border);
-        self.add_stretch_border(&self.contact, displacement, &mut border);
-        self.add_stretch_border(&self.stick, displacement, &mut border);
-        border
-    }
-
-    fn add_stretch_border<E: Element<N>, const N: usize, const K: usize>(
-        &self,
-        kind: &super::kinds::Kind<E, K>,
-        displacement: &[f64],
-        (border, corner): &mut (Vec<f64>, f64),
-    ) {
+        let frame = self.frame(displacement);
         let still = vec![0.0; displacement.len()];
         let motion = |plane| Motion { vertices: still.clone(), plane };
         let (along, across) = (motion(self.deformation.stretch_rate()), motion(self.deformation.compression_rate()));
-        for (element, stencil) in kind.elements.iter().zip(&kind.stencils) {
-            let q: [f64; N] = self.positions(stencil, displacement);
-            if !element.acts(&q) {
-                continue;
-            }
-            let mut local = wale_numerics::check::Local::zero();
-            element.add_blended(&q, 0.0, &mut local);
-            let moves = stencil.map(|image| along.of(self, image));
-            for (a, &image) in stencil.iter().enumerate() {
-                let narrowing = across.of(self, image);
-                for i in 0..3 {
-                    let value: f64 = (0..K)
-                        .map(|b| (0..3).map(|j| local.hessian[3 * a + i][3 * b + j] * moves[b][j]).sum::<f64>())
-                        .sum();
-                    border[SLOTS * image.vertex as usize + i] += value;
-                    *corner += narrowing[i] * value;
+        let (mut border, mut corner) = (vec![0.0; displacement.len()], 0.0);
+        for kind in self.elements.kinds() {
+            kind.linearise(&frame, 0.0, &mut |element| {
+                let mut moves = [[0.0; 3]; MOST_VERTICES];
+                let moves = &mut moves[..element.stencil.len()];
+                moves.iter_mut().zip(element.stencil).for_each(|(m, &image)| *m = along.of(&frame, image));
+                for (a, &image) in element.stencil.iter().enumerate() {
+                    let narrowing = across.of(&frame, image);
+                    for i in 0..3 {
+                        let value = element.hessian_along(3 * a + i, moves);
+                        border[SLOTS * image.vertex as usize + i] += value;
+                        corner += narrowing[i] * value;
+                    }
                 }
-            }
+            });
         }
+        (border, corner)
     }
 
     /// How the forces change with each number of the material, and the work that these changes do in two motions.
     fn work_of_parameters(&self, displacement: &[f64], motions: &[Motion; 2]) -> [[f64; 2]; RodParameter::COUNT] {
+        let frame = self.frame(displacement);
         let mut work = [[0.0; 2]; RodParameter::COUNT];
-        for (element, stencil) in self.stretch.elements.iter().zip(&self.stretch.stencils) {
-            let q = self.positions(stencil, displacement);
-            let soft = RodStretch { soft: 1.0, stiff: 0.0, ..*element }.gradient(&q).1;
-            let stiff = RodStretch { soft: 0.0, stiff: 1.0, ..*element }.gradient(&q).1;
-            self.add_work(stencil, &soft, motions, &mut work[RodParameter::SoftStretch as usize]);
-            self.add_work(stencil, &stiff, motions, &mut work[RodParameter::StiffStretch as usize]);
-            self.add_work(stencil, &element.gradient_by_onset(&q), motions, &mut work[RodParameter::Onset as usize]);
-        }
-        for (element, stencil) in self.bending.elements.iter().zip(&self.bending.stencils) {
-            let q = self.positions(stencil, displacement);
-            let unit = RodBending { stiffness: 1.0, ..*element }.gradient(&q).1;
-            self.add_work(stencil, &unit, motions, &mut work[RodParameter::Bending as usize]);
-        }
-        for (element, stencil) in self.contact.elements.iter().zip(&self.contact.stencils) {
-            let q = self.positions(stencil, displacement);
-            if !element.acts(&q) {
-                continue;
-            }
-            let [outer, inner] = element.phases;
-            let phases = [ContactPhase { stiffness: 1.0, ..outer }, ContactPhase { stiffness: 0.0, ..inner }];
-            let unit = RodContact { phases, ..*element }.gradient(&q).1;
-            self.add_work(stencil, &unit, motions, &mut work[RodParameter::OuterContact as usize]);
-            let wider = element.gradient_by_outer_radius(&q);
-            self.add_work(stencil, &wider, motions, &mut work[RodParameter::OuterRadius as usize]);
-        }
-        for (element, stencil) in self.stick.elements.iter().zip(&self.stick.stencils) {
-            let force = element.gradient(&self.positions(stencil, displacement)).1;
-            let unit = force.map(|force| force / self.material.holding);
-            self.add_work(stencil, &unit, motions, &mut work[RodParameter::Holding as usize]);
+        for kind in self.elements.kinds() {
+            kind.by_parameters(&frame, &self.material, &mut |number, stencil, _, force| {
+                for (sum, motion) in work[number as usize].iter_mut().zip(motions) {
+                    for (&image, f) in stencil.iter().zip(force.as_chunks::<3>().0) {
+                        let d = motion.of(&frame, image);
+                        *sum += d[0] * f[0] + d[1] * f[1] + d[2] * f[2];
+                    }
+                }
+            });
         }
         let by_anchor = self.anchor_by_parameters();
         for (k, motion) in motions.iter().enumerate() {
@@ -269,30 +181,10 @@ impl TileSystem {
     /// How the energy \[J\] changes with each number of the material, the vertices held.
     fn energy_by_parameters(&self, displacement: &[f64]) -> [f64; RodParameter::COUNT] {
         let mut sums = [0.0; RodParameter::COUNT];
-        for (element, stencil) in self.stretch.elements.iter().zip(&self.stretch.stencils) {
-            let q = self.positions(stencil, displacement);
-            let energy = |soft, stiff| RodStretch { soft, stiff, ..*element }.gradient(&q).0;
-            sums[RodParameter::SoftStretch as usize] += energy(1.0, 0.0);
-            sums[RodParameter::StiffStretch as usize] += energy(0.0, 1.0);
-            sums[RodParameter::Onset as usize] += element.energy_by_onset(&q);
-        }
-        for (element, stencil) in self.bending.elements.iter().zip(&self.bending.stencils) {
-            let q = self.positions(stencil, displacement);
-            sums[RodParameter::Bending as usize] += RodBending { stiffness: 1.0, ..*element }.gradient(&q).0;
-        }
-        for (element, stencil) in self.contact.elements.iter().zip(&self.contact.stencils) {
-            let q = self.positions(stencil, displacement);
-            if !element.acts(&q) {
-                continue;
-            }
-            let [outer, inner] = element.phases;
-            let phases = [ContactPhase { stiffness: 1.0, ..outer }, ContactPhase { stiffness: 0.0, ..inner }];
-            sums[RodParameter::OuterContact as usize] += RodContact { phases, ..*element }.gradient(&q).0;
-            sums[RodParameter::OuterRadius as usize] += element.energy_by_outer_radius(&q);
-        }
-        for (element, stencil) in self.stick.elements.iter().zip(&self.stick.stencils) {
-            let energy = element.gradient(&self.positions(stencil, displacement)).0;
-            sums[RodParameter::Holding as usize] += energy / self.material.holding;
+        for kind in self.elements.kinds() {
+            kind.by_parameters(&self.frame(displacement), &self.material, &mut |number, _, energy, _| {
+                sums[number as usize] += energy;
+            });
         }
         let square: f64 = displacement.iter().map(|u| u * u).sum();
         let by_anchor = self.anchor_by_parameters();
@@ -310,20 +202,5 @@ impl TileSystem {
         by[RodParameter::OuterRadius as usize] =
             -multiple * (force / radius + 2.0 * self.material.bending / radius.powi(3)) / radius;
         by
-    }
-
-    fn add_work<const K: usize, const N: usize>(
-        &self,
-        stencil: &[Image; K],
-        force: &[f64; N],
-        motions: &[Motion; 2],
-        work: &mut [f64; 2],
-    ) {
-        for (sum, motion) in work.iter_mut().zip(motions) {
-            for (&image, f) in stencil.iter().zip(force.as_chunks::<3>().0) {
-                let d = motion.of(self, image);
-                *sum += d[0] * f[0] + d[1] * f[1] + d[2] * f[2];
-            }
-        }
     }
 }

@@ -13,7 +13,7 @@ const REACH: f64 = 3.0;
 /// Yarns stick where they touch as the tile lies, `k_h L̄_a L̄_b (1 − (D/3R)²)²/R` for two edges at a distance `D`.
 ///
 /// Nearness is a smooth function of the tile, and `R` that of the inner contact, so that a fit of the outer radius changes no list.
-pub fn sticks(tile: &YarnTile, material: &RodMaterial) -> Kind<RodStick, 4> {
+pub fn sticks(tile: &YarnTile, material: &RodMaterial) -> Kind<RodStick, 4, 12> {
     if material.holding == 0.0 {
         return Kind::new(std::iter::empty());
     }

@@ -301,7 +301,7 @@ fn yarns_stick_where_they_touch() {
     let slid = |solver: &TileSolver| -> f64 {
         let places = unit.elements.iter().zip(&unit.stencils);
         places
-            .map(|(element, stencil)| element.gradient(&solver.system.positions(stencil, &solver.displacement)).0)
+            .map(|(element, stencil)| element.gradient(&solver.system.frame(&solver.displacement).positions(stencil)).0)
             .sum()
     };
     let pulled = |holding: f64| {
