@@ -7,6 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use fits::{acrylic, said};
+use wale::scene::TextFile;
+use wale_lab::card_file::CardFile;
+use wale_lab::yarn_tile::RodParameter;
 
 /// `wale fit` of the fabric into a folder, quickly, with a text for its standard input.
 fn fit(out: &Path, arguments: &[&str], input: &str) -> Output {
@@ -113,6 +116,44 @@ fn a_yarn_is_fitted_the_same_in_one_go_after_a_kill_and_by_answers_from_elsewher
     let none = fit(&out("nowhere"), &["--answer"], "");
     assert_eq!(none.status.code(), Some(3));
     assert!(said(&none).contains("--ask"), "{}", said(&none));
+}
+
+#[test]
+fn a_fit_that_is_killed_goes_on_to_the_same_card_and_keeps_to_what_is_known() {
+    let folder = tempfile::tempdir().unwrap();
+    let fabric = fits::small_fabric(folder.path(), "jersey", "stockinette", [0.4, 1.2, 3.0]);
+    let mut text = fs::read_to_string(&fabric).unwrap();
+    text.push_str("[held]\nk_b = \"20 mN mm^2\"\n[within]\nonset = [\"2 %\", \"3 %\"]\n");
+    fs::write(&fabric, text).unwrap();
+    let out = |name: &str| folder.path().join(name);
+    let whole = fits::fit(&[&fabric], &["--out", out("whole").to_str().unwrap()], "");
+    assert!(whole.status.success(), "{}", said(&whole));
+    let card = fs::read_to_string(out("whole").join("card.toml")).unwrap();
+    let read = CardFile::of(&TextFile::new(&card, "card.toml")).unwrap();
+    let yarn = read.yarn.unwrap();
+    assert!((yarn.material.bending / 2e-8 - 1.0).abs() < 1e-12, "{}", yarn.material.bending);
+    assert_eq!(yarn.within[RodParameter::Bending as usize], 1.0, "it was held");
+    assert!((0.02..=0.03).contains(&yarn.material.onset), "{}", yarn.material.onset);
+    // It was pulled along its courses alone: the rest is its yarn's word.
+    assert!(read.membrane.ss > 1.0 && read.bending.is_some_and(|bending| bending.weft > 0.0));
+    for word in ["k_ss is not determined by these tests", "N/m as the fitted yarn foretells it along the bias and warp"]
+    {
+        assert!(read.open.iter().any(|open| open.contains(word)), "{word}: {:?}", read.open);
+    }
+
+    // Killed as soon as something is answered.
+    let mut child = fits::begun(&fabric, &out("killed"));
+    let answers = out("killed").join("answers.jsonl");
+    let lines = || fs::read_to_string(&answers).map_or(0, |text| text.lines().count());
+    while lines() < 4 && child.try_wait().unwrap().is_none() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!out("killed").join("card.toml").exists() && lines() >= 4, "{} lines", lines());
+    let again = fits::fit(&[&fabric], &["--out", out("killed").to_str().unwrap()], "");
+    assert!(again.status.success() && said(&again).contains("going on with"), "{}", said(&again));
+    assert_eq!(fs::read_to_string(out("killed").join("card.toml")).unwrap(), card);
 }
 
 fn asked_problem(questions: &str) -> String {

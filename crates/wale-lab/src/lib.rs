@@ -4,6 +4,7 @@
 pub mod card_file;
 pub mod curve;
 pub mod fabric_file;
+pub mod foretold;
 pub mod least_squares;
 pub mod network_fit;
 pub mod register;

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use wale_lab::fabric_file::{FabricFile, Structure};
+use wale_lab::yarn_tile::RodParameter;
 
 const WHOLE: &str = r#"
 schema = 1
@@ -130,4 +131,28 @@ fn what_is_wrong_is_said_where_it_stands() {
     let error = read(folder.path()).unwrap_err();
     assert!(error.contains("weft.csv:4: stretch falls"), "{error}");
     assert!(FabricFile::read(Path::new("none.toml")).unwrap_err().to_string().contains("cannot be read"));
+}
+
+#[test]
+fn numbers_of_the_yarn_may_be_held_or_kept_within_bounds() {
+    let folder = folder();
+    let with = |more: &str| {
+        fs::write(folder.path().join("fabric.toml"), format!("{WHOLE}\n{more}")).unwrap();
+        read(folder.path())
+    };
+    let known = with("[held]\nk_b = \"30 mN mm^2\"\n[within]\nonset = [\"2 %\", \"8 %\"]\n").unwrap().known;
+    let [least, largest] = known[RodParameter::Bending as usize].unwrap();
+    assert!((least / 3e-8 - 1.0).abs() < 1e-12 && least == largest);
+    assert_eq!(known[RodParameter::Onset as usize], Some([0.02, 0.08]));
+    assert_eq!(known.iter().flatten().count(), 2);
+    for (more, says) in [
+        ("[within]\nonset = [\"8 %\", \"2 %\"]\n", "the least onset is larger than the largest"),
+        ("[held]\nk_b = 1e-8\n[within]\nk_b = [1e-9, 1e-7]\n", "k_b is held, and is to be looked for within bounds"),
+        ("[held]\nk_s2 = \"100 N\"\n", "the stiffness of a yarn is its k_s2"),
+        ("[held]\nk_b = \"-1 mN mm^2\"\n", "must be positive"),
+        ("[held]\nk_x = 1\n", "k_x"),
+    ] {
+        let error = with(more).unwrap_err();
+        assert!(error.contains(says) && error.contains("fabric.toml:"), "{error}");
+    }
 }

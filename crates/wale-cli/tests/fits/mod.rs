@@ -6,9 +6,9 @@ mod common;
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Output;
+use std::process::{Child, Output, Stdio};
 
-use common::wale_given;
+use common::{program, wale_given};
 
 /// The fabric of the repository.
 pub fn acrylic() -> PathBuf {
@@ -37,6 +37,12 @@ pub fn small_fabric(folder: &Path, name: &str, pattern: &str, forces: [f64; 3]) 
 pub fn fit(fabrics: &[&Path], arguments: &[&str], input: &str) -> Output {
     let fabrics: Vec<&str> = fabrics.iter().map(|path| path.to_str().unwrap()).collect();
     wale_given(&[&["fit", "--quick"], &fabrics[..], arguments].concat(), input)
+}
+
+/// The same, begun, for a test that kills it.
+pub fn begun(fabric: &Path, out: &Path) -> Child {
+    let arguments = ["fit", "--quick", fabric.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    program().args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
 /// What a program said of itself.

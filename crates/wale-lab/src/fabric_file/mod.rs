@@ -21,9 +21,11 @@
 //! width = "60 mm"
 //! ```
 
+mod known;
 mod resolve;
 mod schema;
 
+pub use known::KnownNumbers;
 pub use schema::ArealMass;
 
 use std::path::{Path, PathBuf};
@@ -57,6 +59,8 @@ pub struct FabricFile {
     pub bending: Vec<LoopTest>,
     /// Bending rigidities that instruments printed, by direction.
     pub rigidity: Vec<Rigidity>,
+    /// Numbers of its yarn that are known, or known to lie within bounds.
+    pub known: KnownNumbers,
     /// The fabric file and all others that were opened for it.
     pub inputs: Vec<PathBuf>,
 }

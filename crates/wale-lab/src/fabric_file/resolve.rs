@@ -9,9 +9,11 @@ use wale::scene::dimensions::Angle;
 use wale::scene::units::{Any, Quantity};
 use wale::scene::{Scene, TextFile};
 
+use super::known::known;
 use super::schema::{FabricText, StructureText, TestText};
 use super::{FabricFile, FabricFileError, LoopTest, Rigidity, SCHEMA, StretchTest, Structure, Yarn};
 use crate::curve::{LoopCurve, Request, Specimen, StretchCurve, Table};
+use crate::yarn_tile::RodParameter;
 
 /// How far the shares of the yarns may be from the whole \[–\].
 const ROUNDING: f64 = 0.011;
@@ -67,6 +69,11 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         let direction = direction(&test.direction, &format!("rigidity.{index}"), file)?;
         rigidity.push(Rigidity { direction, value: test.value.si() });
     }
+    let known = known(text.held, text.within, file)?;
+    if let (Some(_), Some(index)) = (known[RodParameter::StiffStretch as usize], stiffest(&yarns)) {
+        let what = "the stiffness of a yarn is its k_s2, which is given again".to_owned();
+        return Err(file.error(&format!("yarn.{index}.stiffness"), what, "leave one of them out").into());
+    }
     rigidity.sort_by(|a, b| a.direction.total_cmp(&b.direction));
     stretch.sort_by(|a, b| a.direction.total_cmp(&b.direction));
     bending.sort_by(|a, b| a.direction.total_cmp(&b.direction));
@@ -80,8 +87,14 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
         stretch,
         bending,
         rigidity,
+        known,
         inputs,
     })
+}
+
+/// The first yarn whose stiffness is given.
+fn stiffest(yarns: &[Yarn]) -> Option<usize> {
+    yarns.iter().position(|yarn| yarn.stiffness.is_some())
 }
 
 fn yarn(text: &super::schema::YarnText) -> Yarn {

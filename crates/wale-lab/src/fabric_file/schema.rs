@@ -6,6 +6,7 @@ use serde::Deserialize;
 use wale::scene::dimensions::{Force, Length, LinearDensity, Ratio};
 use wale::scene::units::{Dimension, Fraction, Positive, Quantity};
 
+use super::known::{HeldText, WithinText};
 use crate::card_file::SheetBending;
 use crate::curve::{ColumnName, Meaning};
 
@@ -48,6 +49,12 @@ pub struct FabricText {
     /// Bending rigidities that an instrument printed.
     #[serde(default)]
     pub rigidity: Vec<RigidityText>,
+    /// Numbers of the yarn that are not fitted.
+    #[serde(default)]
+    pub held: HeldText,
+    /// Bounds of others.
+    #[serde(default)]
+    pub within: WithinText,
 }
 
 /// A bending rigidity `B`, as KES-FB2, FAST or a cantilever print it.

@@ -96,3 +96,40 @@ pub fn errors<const P: usize>(targets: &[Target], answers: &[Vec<Answer<P>>]) ->
     let [comfort, full, compression] = std::array::from_fn(|k| sums[k] / counts[k].max(1) as f64);
     YarnFitError { comfort, full, compression }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shell::{StretchCurve, StretchPoint};
+
+    #[test]
+    fn residuals_are_second_piola_stresses_and_compressions_over_those_at_the_end_of_comfort() {
+        let point = |stretch, force, compression| StretchPoint { stretch, force, compression };
+        let curve = StretchCurve { angle: 0.0, points: vec![point(0.1, 11.0, 0.02), point(0.2, 36.0, 0.05)] };
+        let target = Target::new(&curve, true, 11.0);
+        // A tenth more force than measured, and half as much again of compression.
+        let answer = |stretch, force: f64, compression: f64| Answer {
+            point: point(stretch, 1.1 * force, 1.5 * compression),
+            stress_slope: [1.0],
+            compression_slope: [0.5],
+        };
+        let answers = [answer(0.1, 11.0, 0.02), answer(0.2, 36.0, 0.05)];
+        let mut out = Residuals::default();
+        add_residuals(&target, &answers, |slope: [f64; 1]| slope.map(|s| 2.0 * s), &mut out);
+        // 11 N/m at 10 % is a stress of 10 N/m; the 30 N/m at 20 % weigh a third of it, the compression there two fifths.
+        let share = 0.5f64.sqrt();
+        let beyond = [(1.0 / 3.0f64).sqrt(), 0.4f64.sqrt()];
+        let wanted = [share * 0.1, share * 0.5, share * beyond[0] * 0.3, share * beyond[1] * 1.25];
+        for (found, wanted) in out.values.iter().zip(wanted) {
+            assert!((found - wanted).abs() < 1e-12, "{:?} {wanted}", out.values);
+        }
+        assert!((out.slopes[0][0] - 2.0 * share / 10.0 / 1.1).abs() < 1e-12);
+        assert!((out.slopes[3][0] - 2.0 * share * beyond[1] / 0.02 * 0.5).abs() < 1e-12);
+        let errors = errors(&[target], &[answers.to_vec()]);
+        let close = |found: f64, wanted: f64| (found - wanted).abs() < 1e-12;
+        assert!(
+            close(errors.comfort, 0.1) && close(errors.full, 0.2) && close(errors.compression, 0.875),
+            "{errors:?}"
+        );
+    }
+}

@@ -61,6 +61,12 @@ pub enum YarnProblemError {
         /// The stiffness \[N\] in both.
         stiffness: [f64; 2],
     },
+    /// Or of one of its numbers.
+    #[error("the fabrics are not of one yarn: what [held] and [within] say of its {name} is not the same in all files")]
+    OtherNumber {
+        /// The number.
+        name: &'static str,
+    },
     /// Curves cannot be made uniform.
     #[error(transparent)]
     Shell(#[from] ShellError),
@@ -181,8 +187,13 @@ pub fn yarn_problems(
     ablation: Ablation,
 ) -> Result<Vec<YarnProblem>, YarnProblemError> {
     let mut parts = Vec::with_capacity(fabrics.len());
-    let mut stiffest: Option<f64> = None;
+    let mut known = fabrics.first().map_or([None; RodParameter::COUNT], |(fabric, _)| fabric.known);
+    let stiff = RodParameter::StiffStretch as usize;
+    let mut stiffest = known[stiff].filter(|[least, largest]| least == largest).map(|[value, _]| value);
     for (fabric, shell) in fabrics {
+        if let Some(k) = (0..RodParameter::COUNT).find(|&k| fabric.known[k] != known[k]) {
+            return Err(YarnProblemError::OtherNumber { name: RodParameter::NAMES[k] });
+        }
         let tile = structure_tile(fabric)?;
         let targets = uniform_targets(fabric, shell)?;
         let bending = if ablation.with_bending { bending_targets(fabric, shell, &tile) } else { Vec::new() };
@@ -196,7 +207,17 @@ pub fn yarn_problems(
             }
         }
     }
-    Ok(problems(parts, stiffest, ablation))
+    // What an ablation leaves out is not to be had either.
+    if ablation.one_phase {
+        known[RodParameter::Onset as usize] = None;
+        known[RodParameter::SoftStretch as usize] = None;
+    }
+    if ablation.nothing_holds {
+        known[RodParameter::Holding as usize] = None;
+    }
+    let mut problems = problems(parts, stiffest, ablation);
+    problems.iter_mut().for_each(|problem| problem.space = problem.space.narrowed(&known));
+    Ok(problems)
 }
 
 /// The problem of a tile and its targets; `stiffest` is the stiffness \[N\] of the stiffest yarn, if it was measured.

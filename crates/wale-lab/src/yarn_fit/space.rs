@@ -54,6 +54,13 @@ impl RodSpace {
         self
     }
 
+    /// Gives those numbers other bounds of which some are known.
+    #[must_use]
+    pub fn narrowed(mut self, known: &[Option<[f64; 2]>; P]) -> Self {
+        self.bounds.iter_mut().zip(known).for_each(|(bounds, known)| *bounds = known.unwrap_or(*bounds));
+        self
+    }
+
     /// Lets what holds the yarns be fitted too: from nothing to a yarn that is bent around its own radius.
     #[must_use]
     pub fn with_holding(self) -> Self {

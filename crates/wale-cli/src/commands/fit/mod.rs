@@ -14,8 +14,11 @@ use wale::record::RecordError;
 use wale::record::atomic_file::write_atomically;
 use wale_lab::card_file::YarnCard;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
+use wale_lab::foretold::foretell;
 use wale_lab::shell::membrane_fit::{MembraneFitSettings, MembraneLaw};
 use wale_lab::shell::of_fabric::{ShellFit, ShellFitError, fit_shell};
+use wale_lab::uniform_test::TestedTile;
+use wale_lab::yarn_fit::PullSettings;
 use wale_lab::yarn_fit::of_fabric::{bending_is_known, structure_tile, yarn_problems};
 use wale_lab::yarn_fit::problem::YarnProblem;
 
@@ -117,6 +120,9 @@ fn fit_yarn(
     {
         let fit = &yarn.1.fit;
         shell.card.yarn = Some(YarnCard { material: fit.material, within: fit.within, tile: deliver::TILE.to_owned() });
+        let tested =
+            TestedTile { tile: yarn.1.tile.clone(), material: fit.material, settings: PullSettings::default() };
+        foretell(&fabric, &mut shell, &tested);
         let network = yarn::fit_contacts(&fabric, &mut shell);
         let missing = ablated.missing.clone();
         fitted.push(Fitted { fabric, shell, yarn: Some(yarn), network, ablated: ablated_here, missing });
