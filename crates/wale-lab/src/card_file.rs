@@ -39,6 +39,35 @@ pub struct YarnCard {
     pub tile: String,
 }
 
+/// The contact model of a fabric.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactsCard {
+    /// The file with the scene that has all of its numbers, beside the card.
+    pub scene: String,
+    /// Those that were fitted.
+    pub numbers: Vec<ContactNumber>,
+}
+
+/// A number of the contact model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactNumber {
+    /// What it is called.
+    pub name: String,
+    /// Its value.
+    pub stiffness: ContactStiffness,
+    /// Factor within which it is known with 95 % confidence, infinite where the data do not say.
+    pub within: f64,
+}
+
+/// A stiffness of the contact model, of either dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactStiffness {
+    /// Against everything else \[N\].
+    Force(f64),
+    /// Against bending of a yarn \[N·m²\].
+    Bending(f64),
+}
+
 /// A fabric, as far as its tests told.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CardFile {
@@ -54,6 +83,8 @@ pub struct CardFile {
     pub bending: Option<BendingStiffness>,
     /// Its yarn, if it was fitted.
     pub yarn: Option<YarnCard>,
+    /// Its contact model, if that was fitted.
+    pub contacts: Option<ContactsCard>,
     /// What its tests left open, and what was assumed and not measured, in words.
     pub open: Vec<String>,
 }
@@ -98,6 +129,41 @@ impl YarnText {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
+struct ContactsText {
+    scene: String,
+    numbers: Vec<ContactNumberText>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ContactNumberText {
+    name: String,
+    stiffness: Option<Quantity<Force, NotNegative>>,
+    bending_stiffness: Option<Quantity<BendingOfYarn, NotNegative>>,
+    within: f64,
+}
+
+impl ContactsText {
+    fn card(self, file: &TextFile) -> Result<ContactsCard, SceneError> {
+        let number = |(index, text): (usize, ContactNumberText)| {
+            let stiffness = match (text.stiffness, text.bending_stiffness) {
+                (Some(force), None) => ContactStiffness::Force(force.si()),
+                (None, Some(bending)) => ContactStiffness::Bending(bending.si()),
+                _ => {
+                    let what = format!("{} has not one value", text.name);
+                    let mend = "give a stiffness or a bending_stiffness";
+                    return Err(file.error(&format!("contacts.numbers.{index}"), what, mend));
+                }
+            };
+            Ok(ContactNumber { name: text.name, stiffness, within: text.within })
+        };
+        let numbers = self.numbers.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
+        Ok(ContactsCard { scene: self.scene, numbers })
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Text {
     schema: u32,
     title: String,
@@ -106,6 +172,7 @@ struct Text {
     open: Vec<String>,
     shell: ShellText,
     yarn: Option<YarnText>,
+    contacts: Option<ContactsText>,
 }
 
 #[derive(Deserialize)]
@@ -167,6 +234,9 @@ impl CardFile {
         if let Some(yarn) = &self.yarn {
             yarn.write(&mut text);
         }
+        if let Some(contacts) = &self.contacts {
+            contacts.write(&mut text);
+        }
         text
     }
 
@@ -209,6 +279,7 @@ impl CardFile {
             membrane_within: within,
             bending: shell.bending.map(|three| BendingStiffness::from_array(three.map(Quantity::si))),
             yarn: text.yarn.map(YarnText::card),
+            contacts: text.contacts.map(|contacts| contacts.card(file)).transpose()?,
             open: text.open,
         })
     }
@@ -236,6 +307,23 @@ impl YarnCard {
         let _ = writeln!(text, "contact = \"{reading}\"");
         let within: Vec<String> = self.within.iter().map(|&factor| number(factor)).collect();
         let _ = writeln!(text, "within = [{}]\ntile = {}", within.join(", "), toml_string(&self.tile));
+    }
+}
+
+impl ContactsCard {
+    fn write(&self, text: &mut String) {
+        text.push_str(
+            "\n# Its contact model [Cirio2017]: other scenes have its numbers by `[yarn] card = \"card.toml\"`.\n[contacts]\n",
+        );
+        let _ = writeln!(text, "scene = {}\nnumbers = [", toml_string(&self.scene));
+        for ContactNumber { name, stiffness, within } in &self.numbers {
+            let value = match stiffness {
+                ContactStiffness::Force(value) => format!("stiffness = \"{value:?} N\""),
+                ContactStiffness::Bending(value) => format!("bending_stiffness = \"{value:?} N m^2\""),
+            };
+            let _ = writeln!(text, "    {{ name = {}, {value}, within = {} }},", toml_string(name), number(*within));
+        }
+        text.push_str("]\n");
     }
 }
 
@@ -282,6 +370,7 @@ mod tests {
             membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.0, 1.0, 1.0, 1.0],
             bending: Some(BendingStiffness { weft: 1e-6, bias: 2e-6, warp: 1.0 / 3e5 }),
             yarn: None,
+            contacts: None,
             open: vec!["k_ss is \"open\"".to_owned(), "assumed: all".to_owned()],
         };
         let material = RodMaterial {
@@ -292,7 +381,15 @@ mod tests {
         };
         let within = [1.0, 2.0, f64::INFINITY, 1.5, 1.1, 7.0, 2.0];
         let yarn = Some(YarnCard { material, within, tile: "tile.pyp".to_owned() });
-        let whole = CardFile { yarn, ..card.clone() };
+        let contact = |name: &str, stiffness, within| ContactNumber { name: name.to_owned(), stiffness, within };
+        let contacts = Some(ContactsCard {
+            scene: "swatch.toml".to_owned(),
+            numbers: vec![
+                contact("warp bending", ContactStiffness::Bending(1e-8 / 3.0), 1.5),
+                contact("shear", ContactStiffness::Force(0.1), f64::INFINITY),
+            ],
+        });
+        let whole = CardFile { yarn, contacts, ..card.clone() };
         let stiffens = CardFile {
             membrane: MembraneStiffness { stiffening_xx: 1.5, stiffening_xy: 1.0 / 3.0, ..card.membrane },
             membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.5, f64::INFINITY, 2.0, 1.25],
@@ -321,6 +418,7 @@ mod tests {
             membrane_within: [1.0; MembraneStiffness::COUNT],
             bending: None,
             yarn: None,
+            contacts: None,
             open: Vec::new(),
         };
         let refused = |from: &str, to: &str| {
@@ -330,6 +428,8 @@ mod tests {
         assert!(refused("schema = 1", "schema = 2").contains("card.toml:1:10: schema 2 is not known"));
         assert!(refused("k_xx = \"1.0 N/m\"", "k_xx = \"-1.0 N/m\"").contains("must be positive"));
         assert!(refused("within = [1.0, ", "within = [").contains("5 factors for 6 stiffnesses"));
+        let two = "open = []\n[contacts]\nscene = \"s\"\nnumbers = [{ name = \"shear\", within = 1.0 }]\n[shell]";
+        assert!(refused("[shell]", two).contains("shear has not one value"));
         assert!(refused("k_yy = \"1.0 N/m\"\n", "").contains("`k_yy` is missing"));
     }
 }

@@ -136,6 +136,7 @@ pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<
         membrane_within: membrane.least_squares.uncertainty,
         bending: bending.as_ref().map(|fit| fit.stiffness).or_else(|| printed(&fabric.rigidity, &mut open)),
         yarn: None,
+        contacts: None,
         open: open.clone(),
     };
     Ok(ShellFit { membrane, bending, card, open })

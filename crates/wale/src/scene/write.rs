@@ -55,6 +55,7 @@ fn yarn(scene: &Scene, number: usize) -> Written<YarnText> {
     let card = scene.yarns.of(u8::try_from(number).unwrap_or(0));
     Ok(YarnText {
         preset: None,
+        card: None,
         linear_density: some(card.linear_density)?,
         diameter: some(2.0 * card.radius)?,
         packing: None,

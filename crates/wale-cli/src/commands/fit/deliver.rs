@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use wale::scene::Scene;
-use wale_lab::card_file::CardFile;
+use wale_lab::card_file::{CardFile, ContactNumber, ContactStiffness, ContactsCard};
 use wale_lab::fabric_file::FabricFile;
 use wale_lab::network_fit::NetworkFit;
 use wale_lab::report::{Conclusion, Told, ablation_figure, ablations_csv, conclusion, curves_csv, curves_figure, page};
@@ -20,10 +20,12 @@ use crate::say;
 
 /// The file with the yarn's tile, which the card names.
 pub const TILE: &str = "tile.pyp";
+/// The scene with the contact model's numbers, which the card names too.
+const SCENE: &str = "swatch.toml";
 /// The table of ablations.
 pub const ABLATIONS: &str = "ablations.csv";
 /// Files of a finished fit; what they are is in `docs/topics/fabric-files.md`.
-pub const RESULTS: [&str; 6] = ["card.toml", "curves.csv", "curves.svg", "report.html", TILE, "swatch.toml"];
+pub const RESULTS: [&str; 6] = ["card.toml", "curves.csv", "curves.svg", "report.html", TILE, SCENE];
 
 /// What was fitted to a fabric.
 pub struct Fitted {
@@ -76,13 +78,14 @@ impl Fitted {
         }
         if let Some((scene, _)) = &self.network {
             let text = scene.resolved_toml().map_err(|error| Failure::new(Code::Bug, error))?;
-            write(&folder.join("swatch.toml"), text.as_bytes())?;
+            write(&folder.join(SCENE), text.as_bytes())?;
         }
         if let Some(figure) = ablation_figure(&told) {
             write(&folder.join("ablations.svg"), figure.to_svg().map_err(bad)?.as_bytes())?;
             write(&folder.join(ABLATIONS), ablations_csv(&told).as_bytes())?;
         }
-        let card = CardFile { open: self.shell.open.clone(), ..self.shell.card.clone() };
+        let contacts = self.network.as_ref().map(|(_, fit)| contacts_card(fit));
+        let card = CardFile { contacts, open: self.shell.open.clone(), ..self.shell.card.clone() };
         write(&folder.join(RESULTS[0]), card.to_toml().as_bytes())
     }
 
@@ -101,4 +104,16 @@ impl Fitted {
         }
         say!("  {}", folder.join("report.html").display())
     }
+}
+
+/// A contact model's numbers as the card has them.
+fn contacts_card(fit: &NetworkFit) -> ContactsCard {
+    let number = |k: usize| {
+        let (kind, value) = (fit.kinds[k], fit.stiffness[k]);
+        let stiffness =
+            if kind.is_bending() { ContactStiffness::Bending(value) } else { ContactStiffness::Force(value) };
+        ContactNumber { name: kind.name().to_owned(), stiffness, within: fit.within[k] }
+    };
+    let numbers = (0..fit.kinds.len()).filter(|&k| fit.stiffness[k] > 0.0).map(number).collect();
+    ContactsCard { scene: SCENE.to_owned(), numbers }
 }

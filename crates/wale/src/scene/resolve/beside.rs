@@ -10,8 +10,8 @@ use crate::scene::error::{Complaint, ErrorClass, shortened};
 pub(super) fn path_beside(key: &str, name: &str, directory: Option<&Path>) -> Result<PathBuf, Complaint> {
     let complain = |what: String| {
         Complaint::new(key, what)
-            .why("a chart file lies in the folder of its scene, or below it")
-            .mend("write for instance file = \"rib.knit\"")
+            .why("a file that a scene names lies in the scene's folder, or below it")
+            .mend("write for instance \"rib.knit\"")
     };
     let shown = shortened(name);
     let inside = !name.is_empty()

@@ -1,5 +1,6 @@
 //! From what a scene file says to plain SI numbers: presets, defaults, and every check that needs more than one value.
 
+mod base;
 mod beside;
 mod chart;
 mod fabric;
@@ -15,7 +16,7 @@ use glam::{DQuat, DVec3};
 
 use super::dimensions::Ratio;
 use super::error::{Complaint, SceneError};
-use super::schema::{AxisAngle, Direction, FabricText, PresetName, SceneText, YarnText};
+use super::schema::{AxisAngle, Direction, SceneText};
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
 use crate::model::{FabricCard, Plan};
@@ -41,22 +42,23 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
             .into());
     }
     let said = text.yarn.clone().unwrap_or_default();
-    let (yarn_base, fabric_base) = base(&said, &text.fabric)?;
+    let base = base::base(text, directory)?;
     let (fabric, structure, (yarns, yarn_colors), names, inputs) = if let Some(weave) = &text.fabric.weave {
         let mut drafted = weave::resolve(weave, directory)?;
-        let (yarns, colors) = yarns::cards(&drafted.yarns, &said, &yarn_base, &text.yarns)?;
+        let (yarns, colors) = yarns::cards(&drafted.yarns, &said, &base, &text.yarns)?;
         drafted.complete_colors(&colors);
-        let card = weave::card(&text.fabric, &drafted, &yarns)?;
+        let card = weave::card(&text.fabric, &base.fabric, &drafted, &yarns)?;
         let (names, inputs) = (drafted.yarns.clone(), drafted.inputs.clone());
         (FabricCard::Woven(card), drafted.structure(), (yarns, colors), names, inputs)
     } else {
         // A wrong yarn or loop is said before a wrong chart.
-        yarn::resolve("yarn", &said, &yarn_base)?;
+        yarn::resolve("yarn", &said, &base.yarn)?;
         let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
-        let (yarns, colors) = yarns::cards(&stitches.yarns, &said, &yarn_base, &text.yarns)?;
-        let card = fabric::resolve(&text.fabric, &fabric_base, yarns.first())?;
+        let (yarns, colors) = yarns::cards(&stitches.yarns, &said, &base, &text.yarns)?;
+        let card = fabric::resolve(&text.fabric, &base.fabric, yarns.first())?;
         (FabricCard::Knit(card), stitches.structure, (yarns, colors), stitches.yarns, stitches.inputs)
     };
+    let inputs = [base.inputs, inputs].concat();
     let placement = fabric::placement(&text.fabric)?;
     let simulation = plan::simulation(&text.simulation.clone().unwrap_or_default())?;
     let output = plan::output(&text.output.clone().unwrap_or_default());
@@ -66,22 +68,6 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     let plan = Plan { placement, simulation, obstacles, grips, output };
     let title = text.title.clone().unwrap_or_default();
     Ok((Scene { title, yarns, yarn_colors, fabric, structure, plan }, inputs))
-}
-
-/// What stands behind the numbers of the scene: the paper's table, or a preset.
-fn base(yarn: &YarnText, fabric: &FabricText) -> Result<(YarnText, FabricText), Complaint> {
-    match (&fabric.paper_table_1, yarn.preset) {
-        (Some(_), Some(_)) => {
-            Err(Complaint::new("yarn.preset", "the yarn has a preset and the fabric a paper_table_1")
-                .why("both say everything about the yarn")
-                .mend("keep one of them"))
-        }
-        (Some(table), None) => Ok(fabric::from_paper_table_1(table)),
-        (None, preset) => {
-            let preset = preset.unwrap_or(PresetName::WorstedWool).read();
-            Ok((preset.yarn, preset.fabric))
-        }
-    }
 }
 
 fn si<D: Dimension, B: Bounds>(quantity: Option<Quantity<D, B>>) -> Option<f64> {

@@ -217,8 +217,13 @@ fn threads(mut draft: Draft, text: &WeaveText) -> Result<(Draft, Vec<String>), C
     Ok((draft, names))
 }
 
-/// The card of a woven fabric.
-pub(super) fn card(text: &FabricText, drafted: &Drafted, yarns: &Yarns) -> Result<WovenCard, Complaint> {
+/// The card of a woven fabric; `base` stands behind what the scene says of its stiffnesses. Lengths follow from the sett.
+pub(super) fn card(
+    text: &FabricText,
+    base: &FabricText,
+    drafted: &Drafted,
+    yarns: &Yarns,
+) -> Result<WovenCard, Complaint> {
     knit_keys(text)?;
     let Some(weave) = &text.weave else { return Err(Complaint::new("fabric", "the fabric has no weave")) };
     // Of several yarns the thickest decides what is possible.
@@ -243,11 +248,17 @@ pub(super) fn card(text: &FabricText, drafted: &Drafted, yarns: &Yarns) -> Resul
     pair(&mut card.crimp_height, weave.crimp_height);
     pair(&mut card.interlacing_spacing, weave.interlacing_spacing);
     pair(&mut card.float_spacing, weave.float_spacing);
-    card.shear_stiffness = si(weave.shear_stiffness).unwrap_or(card.shear_stiffness);
+    // A preset is a knit's, and says nothing of a weave's contacts.
+    let known = base.weave.as_ref().map(|weave| (weave, base));
+    let shear_stiffness = weave.shear_stiffness.or(known.and_then(|(weave, _)| weave.shear_stiffness));
+    let spacing_stiffness = text.spacing_stiffness.or(known.and_then(|(_, base)| base.spacing_stiffness));
+    let anchor_stiffness = text.anchor_stiffness.or(known.and_then(|(_, base)| base.anchor_stiffness));
+    let residual_compression = text.residual_compression.or(known.and_then(|(_, base)| base.residual_compression));
+    card.shear_stiffness = si(shear_stiffness).unwrap_or(card.shear_stiffness);
     card.shear_jamming_angle = si(weave.shear_jamming_angle).unwrap_or(card.shear_jamming_angle);
-    card.spacing_stiffness = si(text.spacing_stiffness).unwrap_or(card.spacing_stiffness);
-    card.anchor_stiffness = si(text.anchor_stiffness).unwrap_or(card.anchor_stiffness);
-    card.residual_compression = si(text.residual_compression).unwrap_or(card.residual_compression);
+    card.spacing_stiffness = si(spacing_stiffness).unwrap_or(card.spacing_stiffness);
+    card.anchor_stiffness = si(anchor_stiffness).unwrap_or(card.anchor_stiffness);
+    card.residual_compression = si(residual_compression).unwrap_or(card.residual_compression);
     if card.shear_jamming_angle >= std::f64::consts::FRAC_PI_2 {
         let complaint = Complaint::new(
             format!("{HERE}.shear_jamming_angle"),

@@ -82,6 +82,7 @@ pub(super) fn said_over_base(said: &YarnText, base: &YarnText) -> YarnText {
     let sized = said.packing.is_some() || said.fibre_density.is_some();
     YarnText {
         preset: None,
+        card: None,
         linear_density: said.linear_density.or(base.linear_density),
         diameter: said.diameter.or(base.diameter.filter(|_| !sized)),
         packing: said.packing.or(base.packing).filter(|_| said.diameter.is_none()),

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use super::base::Base;
 use super::beside::{path_beside, read_bytes};
 use super::chart::{HERE, unknown_stitch};
 use super::{Failure, yarn};
@@ -169,7 +170,7 @@ pub(super) fn assign(
 pub(super) fn cards(
     names: &[String],
     first: &YarnText,
-    base: &YarnText,
+    base: &Base,
     others: &BTreeMap<String, YarnText>,
 ) -> Result<(Yarns, Vec<[u8; 3]>), Complaint> {
     for other in others.keys() {
@@ -184,15 +185,17 @@ pub(super) fn cards(
             });
         }
     }
-    let own = yarn::resolve("yarn", first, base)?;
-    let behind = yarn::said_over_base(first, base);
-    let of = |name: &String| match others.get(name) {
-        Some(other) => {
-            let path = format!("yarns.{name}");
-            of_the_first(&path, other)?;
-            yarn::resolve(&path, other, &behind)
+    let own = yarn::resolve("yarn", first, &base.yarn)?;
+    let behind = yarn::said_over_base(first, &base.yarn);
+    let path = |name: &String| format!("yarns.{name}");
+    let of = |name: &String| match (others.get(name), base.yarns.get(name)) {
+        (Some(other), known) => {
+            of_the_first(&path(name), other)?;
+            let behind = known.map_or_else(|| behind.clone(), |known| yarn::said_over_base(known, &behind));
+            yarn::resolve(&path(name), other, &behind)
         }
-        None => Ok(own.clone()),
+        (None, Some(known)) => yarn::resolve(&path(name), &yarn::said_over_base(first, known), &base.yarn),
+        (None, None) => Ok(own.clone()),
     };
     let found = names.iter().map(of).collect::<Result<Vec<_>, _>>()?;
     let mut found = if found.is_empty() { vec![own] } else { found };
@@ -205,6 +208,7 @@ pub(super) fn cards(
 fn of_the_first(path: &str, text: &YarnText) -> Result<(), Complaint> {
     let keys = [
         ("preset", text.preset.is_some()),
+        ("card", text.card.is_some()),
         ("mass_damping", text.mass_damping.is_some()),
         ("stiffness_damping", text.stiffness_damping.is_some()),
     ];

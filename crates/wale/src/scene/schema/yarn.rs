@@ -30,6 +30,9 @@ pub struct YarnText {
     /// A yarn that wale knows; worsted-wool if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<PresetName>,
+    /// The card of a fabric that `wale fit` has fitted, in place of a preset: the numbers of its yarns and contacts.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub card: Option<String>,
     /// Mass per length of the whole yarn, or its count: tex, denier, Nm, Ne.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub linear_density: Option<Quantity<LinearDensity, Positive>>,
