@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Command, Subcommand, ValueEnum};
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as PlainError, StrDeserializer};
 use serde::{Deserialize, Serialize};
@@ -86,6 +86,12 @@ impl Test {
             Self::PictureFrame(of) => Some(&mut of.directed.direction),
             Self::Drape(_) | Self::BiasExtension(_) | Self::Fast(_) | Self::Curl(_) | Self::Relaxation(_) => None,
         }
+    }
+
+    /// Names of all tests, in the order in which the help has them.
+    pub fn names() -> Vec<String> {
+        let command = Self::augment_subcommands(Command::new("lab"));
+        command.get_subcommands().map(|test| test.get_name().to_owned()).collect()
     }
 
     /// Its name on the command line.

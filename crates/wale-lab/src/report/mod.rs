@@ -1,17 +1,20 @@
 //! What a fit is told by: tables of curves and errors, plots beside the data, conclusions of ablations, and a page that needs no other
-//! file [after Sperl2022, Figs. 11 and 13 to 18].
+//! file [after Sperl2022, Figs. 11 and 13 to 18]; and the page of virtual tests.
 
 mod conclusion;
 mod curves;
+mod document;
 mod errors;
 mod figures;
 mod page;
+mod tests_page;
 
 pub use conclusion::{Conclusion, conclusion, sum_of_squares};
 pub use curves::{ablations_csv, curves_csv};
 pub use errors::{DirectionErrors, ShellErrors, bending_error, shell_errors, yarn_errors};
 pub use figures::{ablation_figure, curves_figure};
 pub use page::page;
+pub use tests_page::{MadeTest, PrintedGroup, is_tests_page, tests_page};
 
 use crate::fabric_file::FabricFile;
 use crate::shell::of_fabric::ShellFit;

@@ -6,6 +6,7 @@ use wale::picture::PlotError;
 
 use super::Told;
 use super::conclusion::{conclusion, sum_of_squares};
+use super::document::{document, escaped, inlined};
 use super::errors::{DirectionErrors, shell_errors, yarn_errors};
 use super::figures::{ablation_figure, curves_figure};
 use crate::fabric_file::direction_name;
@@ -14,9 +15,8 @@ use crate::yarn_fit::run::YarnFit;
 use crate::yarn_fit::{RodSpace, YarnFitError};
 use crate::yarn_tile::RodParameter;
 
-const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em}\
-pre{white-space:pre-wrap}svg{max-width:100%;height:auto}table{border-collapse:collapse;margin:1em 0}\
-th,td{padding:.15em .8em;text-align:right}th:first-child,td:first-child{text-align:left}tr{border-bottom:1px solid #ddd}\
+/// Of bars and of numbers within their bounds.
+const STYLE: &str = "\
 .bar{display:inline-block;height:.7em;background:#2f7fb8;margin-right:.5em}.bar.off{background:#8a3f9c}\
 .line{position:relative;width:16em;height:1em;border-bottom:1px solid #888}\
 .known{position:absolute;bottom:-.2em;height:.4em;background:#9cc4e0}\
@@ -30,8 +30,11 @@ const LONGEST: f64 = 8.0;
 /// If there is nothing to draw.
 pub fn page(told: &Told<'_>, lines: &[String]) -> Result<String, PlotError> {
     let title = if told.fabric.title.is_empty() { "A fabric" } else { &told.fabric.title };
-    let mut body =
-        format!("<h1>{}</h1>\n<h2>Curves</h2>\n{}\n", escaped(title), inlined(&curves_figure(told).to_svg()?));
+    let mut body = format!(
+        "<h1>{}</h1>\n<h2>Curves</h2>\n{}\n",
+        escaped(title),
+        inlined(&curves_figure(told).to_svg()?, "curves")
+    );
     if told.yarn.is_some() {
         body.push_str("<p>The bar is where the range of comfort ends.</p>\n");
     }
@@ -47,33 +50,7 @@ pub fn page(told: &Told<'_>, lines: &[String]) -> Result<String, PlotError> {
         "<p>Read from {}. The card is in card.toml, the curves are in curves.csv.</p>",
         files.join(", ")
     );
-    Ok(format!(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title>\n<style>{STYLE}</style>\n\
-         </head><body>\n{body}</body></html>\n",
-        escaped(title)
-    ))
-}
-
-/// A figure as a page holds it: in the page's font, since one of its own would be half of the file, and as wide as there is room.
-fn inlined(svg: &str) -> String {
-    let without_font = match (svg.find("<style>@font-face"), svg.find("</style>")) {
-        (Some(from), Some(to)) if from < to => [&svg[..from], &svg[to + "</style>".len()..]].concat(),
-        _ => svg.to_owned(),
-    };
-    let side = |name: &str| {
-        let (_, rest) = without_font.split_once(&format!(" {name}=\""))?;
-        rest.split_once('"')?.0.parse::<f64>().ok()
-    };
-    match (side("width"), side("height")) {
-        (Some(width), Some(height)) => {
-            without_font.replacen("<svg ", &format!("<svg viewBox=\"0 0 {width} {height}\" "), 1)
-        }
-        _ => without_font,
-    }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    Ok(document(title, "wale fit", STYLE, &body))
 }
 
 /// An error as a bar and a number.
@@ -176,7 +153,7 @@ fn ablations_section(told: &Told<'_>, body: &mut String) -> Result<(), PlotError
         let _ = writeln!(
             body,
             "{}\n<p>The curves are in ablations.csv. The bar is where the range of comfort ends.</p>",
-            inlined(&figure.to_svg()?)
+            inlined(&figure.to_svg()?, "ablations")
         );
     }
     Ok(())
@@ -191,20 +168,4 @@ fn row(title: &str, found: Option<(&YarnFitError, f64)>, bending: Option<f64>, b
     };
     let bending = if bending.is_some() { bar(bending) } else { "<td></td>".to_owned() };
     let _ = writeln!(body, "<tr><td>{title}</td>{cells}{bending}<td>{sum}</td></tr>");
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_figure_in_a_page_has_no_font_of_its_own_and_scales() {
-        let svg =
-            "<svg xmlns=\"x\" width=\"300\" height=\"200.5\"><style>@font-face{src:url('data:…')}</style><path/></svg>";
-        assert_eq!(
-            inlined(svg),
-            "<svg viewBox=\"0 0 300 200.5\" xmlns=\"x\" width=\"300\" height=\"200.5\"><path/></svg>"
-        );
-        assert_eq!(inlined("<svg><path/></svg>"), "<svg><path/></svg>");
-    }
 }

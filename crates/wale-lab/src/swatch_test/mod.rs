@@ -35,7 +35,9 @@ pub enum SwatchTestError {
         must: &'static str,
     },
     /// There is no chart.
-    #[error("swatches are knitted from the chart of a scene, and there is none")]
+    #[error(
+        "swatches are knitted from the chart of a scene, and there is none; test a weave as a shell, a tile or by its contacts"
+    )]
     NoChart,
     /// A weave whose shrinkage was asked for.
     #[error("a weave is at rest at the sett that its scene gives it: nothing in its repeat shrinks")]

@@ -5,6 +5,7 @@
 //! work comes back. Definitions and sources: `docs/topics/virtual-tests.md`.
 
 pub mod bending;
+pub mod cantilever;
 pub mod fast;
 pub mod picture_frame;
 pub mod shear;
@@ -18,6 +19,7 @@ use crate::yarn_fit::PullSettings;
 use crate::yarn_tile::{RodMaterial, TileError, YarnTile};
 
 pub use bending::{TileBendingResult, TileBendingTest};
+pub use cantilever::{HeavyElastica, heavy_elastica, tile_cantilever};
 pub use fast::{UniformFastDirection, UniformFastResult, uniform_fast};
 pub use picture_frame::tile_picture_frame;
 pub use shear::tile_shear;

@@ -2,7 +2,7 @@
 
 use kuva::{
     backend::{raster::RasterBackend, svg::SvgBackend},
-    plot::{LegendPosition, LinePlot, LineStyle},
+    plot::{LegendPosition, LinePlot, LineStyle, ScatterPlot},
     render::{
         figure::Figure,
         layout::{AxisLine, Layout},
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Line colours, told apart also by those who see red and green alike (lightness differs).
 const COLORS: [&str; 7] = ["#20638f", "#cf5c36", "#6a994e", "#7b4b94", "#d9a426", "#3b3f4a", "#4fb0ae"];
 
-/// One line of a plot.
+/// One line of a plot; a dot where it has one point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Series {
     /// Name in the legend; an empty one is left out.
@@ -162,16 +162,23 @@ impl Panel {
             if points.is_empty() {
                 continue;
             }
+            let color = COLORS[i % COLORS.len()];
+            if points.len() == 1 {
+                // A line through one point is not seen.
+                let mut point = ScatterPlot::new().with_data(points).with_color(color).with_size(4.0);
+                if !series.name.is_empty() {
+                    point = point.with_legend(series.name.clone());
+                }
+                lines.push(KuvaPlot::Scatter(point));
+                continue;
+            }
             let style = match i / COLORS.len() {
                 0 => LineStyle::Solid,
                 1 => LineStyle::Dashed,
                 _ => LineStyle::Dotted,
             };
-            let mut line = LinePlot::new()
-                .with_data(points)
-                .with_color(COLORS[i % COLORS.len()])
-                .with_stroke_width(2.0)
-                .with_line_style(style);
+            let mut line =
+                LinePlot::new().with_data(points).with_color(color).with_stroke_width(2.0).with_line_style(style);
             if !series.name.is_empty() {
                 line = line.with_legend(series.name.clone());
             }
@@ -257,5 +264,15 @@ mod tests {
         assert_eq!(Plot::lines("t", "x", "y", &[]).to_svg(), Err(PlotError::Empty(0)));
         let flat = Series { name: String::new(), xs: vec![1.0], ys: vec![2.0] };
         assert!(Plot::lines("t", "x", "y", &[flat]).to_png().is_ok());
+    }
+
+    #[test]
+    fn a_single_point_is_drawn() {
+        let point = |name: &str, x: f64| Series { name: name.to_owned(), xs: vec![x], ys: vec![2.0] };
+        let image = Plot::lines("t", "x", "y", &[point("", 1.0)]).to_png().unwrap();
+        let image = crate::picture::read_png(&image).unwrap();
+        assert!(image.pixels.iter().filter(|&&pixel| pixel == [0x20, 0x63, 0x8f]).count() > 50);
+        let two = Plot::lines("t", "x", "y", &[point("weft", 1.0), point("warp", 3.0)]).to_svg().unwrap();
+        assert!(two.contains("weft") && two.contains(COLORS[1]));
     }
 }

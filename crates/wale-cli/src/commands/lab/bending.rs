@@ -1,9 +1,10 @@
 //! Tests that bend a fabric: KES bending, cantilever, pear loops.
 
 use wale::picture::Plot;
+use wale_lab::virtual_test::cantilever::{self as hang, CantileverResult};
 use wale_lab::virtual_test::pear_loop::{Clamps as LoopClamps, Hanging};
 use wale_lab::virtual_test::units::{DEG, GF_CM_PER_CM, GF_CM2_PER_CM, MM, PER_CM, UN_M};
-use wale_lab::virtual_test::{CantileverTest, KesBendingTest, PearLoopTest, cantilever as hang};
+use wale_lab::virtual_test::{CantileverTest, KesBendingTest, PearLoopTest};
 
 use super::card::Card;
 use super::failure::TestFailure;
@@ -39,10 +40,22 @@ pub fn kes_bending(card: &Card, of: &Directed) -> Result<Report, TestFailure> {
 }
 
 pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, TestFailure> {
-    let base = CantileverTest { slope: of.slope, ..CantileverTest::default() };
-    let base = CantileverTest { width: of.width.unwrap_or(base.width), ..base };
+    let test = cantilever_test(of);
     let found =
-        in_directions(&of.directed.direction, |angle| hang::run(&CantileverTest { angle, ..base }, &card.shell))?;
+        in_directions(&of.directed.direction, |angle| hang::run(&CantileverTest { angle, ..test }, &card.shell))?;
+    let mut report = cantilever_report(&found, of.slope, &card.title);
+    report.what = format!("{}, {} mm wide", report.what, digits(test.width / MM));
+    Ok(report)
+}
+
+/// The test that is asked for.
+pub fn cantilever_test(of: &Cantilever) -> CantileverTest {
+    let default = CantileverTest::default();
+    CantileverTest { width: of.width.unwrap_or(default.width), slope: of.slope, ..default }
+}
+
+/// What the test prints of a model.
+pub fn cantilever_report(found: &[(f64, CantileverResult)], slope: f64, title: &str) -> Report {
     let groups = found.iter().map(|(angle, found)| Group {
         name: direction_name(*angle),
         direction: Some(*angle),
@@ -57,22 +70,18 @@ pub fn cantilever(card: &Card, of: &Cantilever) -> Result<Report, TestFailure> {
         found.iter().flat_map(|(angle, found)| found.profile.iter().map(|[x, z]| vec![angle.to_degrees(), *x, *z]));
     let series = found.iter().map(|(a, f)| line(*a, f.profile.iter().map(|[x, z]| [x / MM, z / MM])));
     let mut remarks = Vec::new();
-    if (of.slope - 41.5 * DEG).abs() > 1e-6 {
+    if (slope - 41.5 * DEG).abs() > 1e-6 {
         remarks.push("G = W c³ holds for a slope of 41.5° alone".to_owned());
     }
-    Ok(Report {
-        what: format!(
-            "cantilever (ASTM D1388), {} mm wide, to a slope of {}°",
-            digits(base.width / MM),
-            digits(of.slope / DEG)
-        ),
+    Report {
+        what: format!("cantilever (ASTM D1388), to a slope of {}°", digits(slope / DEG)),
         groups: groups.collect(),
         heads: heads(["direction [deg]", "along [m]", "up [m]"]),
         rows: rows.collect(),
-        plot: Plot::lines(&card.title, "from the edge [mm]", "height [mm]", &series.collect::<Vec<_>>()),
+        plot: Plot::lines(title, "from the edge [mm]", "height [mm]", &series.collect::<Vec<_>>()),
         remarks,
         extras: Vec::new(),
-    })
+    }
 }
 
 pub fn pear_loop(card: &Card, of: &PearLoop) -> Result<Report, TestFailure> {

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use wale::scene::{Scene, TextFile};
 use wale_lab::card_file::CardFile;
 use wale_lab::fabric_file::{FabricFile, FabricFileError};
+use wale_lab::swatch_test::SwatchTestError;
 use wale_lab::uniform_test::TestedTile;
 use wale_lab::yarn_fit::PullSettings;
 use wale_lab::yarn_tile::read_pattern;
@@ -106,6 +107,14 @@ impl Fabric {
         if matches!(by, By::Contacts | By::Yarns) {
             let text = self.scene.as_ref().ok_or_else(|| lacks("scene"))?;
             let scene = Box::new(Scene::from_text(text, &name).map_err(scene_failure)?);
+            let unfit = match (by, test) {
+                (By::Yarns, _) if scene.structure.chart().is_none() => Some(SwatchTestError::NoChart),
+                (_, Test::Relaxation(_)) if scene.fabric.woven().is_some() => Some(SwatchTestError::Sett),
+                _ => None,
+            };
+            if let Some(why) = unfit {
+                return Err(Failure::new(Code::BadInput, format_args!("{name}: {why}")));
+            }
             return Ok(if by == By::Yarns { Specimen::Yarns(scene) } else { Specimen::Contacts(scene) });
         }
         let text = self.card.as_ref().ok_or_else(|| lacks("card"))?;

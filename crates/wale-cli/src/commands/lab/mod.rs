@@ -5,6 +5,7 @@ mod card;
 mod drape;
 mod fabric;
 mod failure;
+mod folder;
 mod in_plane;
 mod models;
 mod question;
@@ -25,8 +26,9 @@ use crate::exit::{Code, Failure};
 use crate::machine;
 use fabric::Fabric;
 use failure::TestFailure;
+use folder::refuse_taken;
 use question::{Found, Question};
-use report::{Report, direction_name, refuse_taken};
+use report::{Report, direction_name};
 
 /// Does a test, asks for it, or takes what was found elsewhere.
 pub fn lab(arguments: &Lab) -> Result<(), Failure> {
@@ -94,7 +96,7 @@ pub fn lab(arguments: &Lab) -> Result<(), Failure> {
         let report = Report::join(reports.collect::<Result<Vec<_>, Failure>>()?);
         let report = report.ok_or_else(|| Failure::new(Code::Bug, "a test without a direction"))?;
         let title = questions[0].1.fabric.title();
-        report.deliver(test.name(), title, &folder(path), common.results.json)?;
+        report.deliver(test.name(), by, title, &folder(path), common.results.json)?;
     }
     if lost.is_empty() {
         return Ok(());

@@ -7,11 +7,13 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use wale::picture::Plot;
-use wale::record::RecordError;
-use wale::record::atomic_file::write_atomically;
+use wale::record::atomic_file::write_bytes_atomically;
 pub use wale_lab::fabric_file::direction_name;
+use wale_lab::report::PrintedGroup;
 
 use super::failure::TestFailure;
+use super::folder::write_page;
+use crate::arguments::lab::By;
 use crate::exit::{Code, Failure};
 use crate::{output, say};
 
@@ -145,7 +147,16 @@ impl Report {
         Err(TestFailure::not_converged("the test gave numbers that are not finite"))
     }
 
-    fn json(&self, test: &str, title: &str, folder: &Path) -> Value {
+    fn printed(&self) -> Vec<PrintedGroup> {
+        let number = |number: &Number| [number.name.clone().into_owned(), number.shown.clone()];
+        let group = |group: &Group| PrintedGroup {
+            name: group.name.clone(),
+            numbers: group.numbers.iter().map(number).collect(),
+        };
+        self.groups.iter().map(group).collect()
+    }
+
+    fn json(&self, test: &str, by: By, title: &str, folder: &Path) -> Value {
         let group = |group: &Group| {
             let mut map = Map::new();
             map.insert("name".to_owned(), json!(group.name));
@@ -159,10 +170,12 @@ impl Report {
         };
         json!({
             "test": test,
+            "by": by,
             "title": title,
             "what": self.what,
             "folder": folder,
             "results": self.groups.iter().map(group).collect::<Vec<_>>(),
+            "printed": self.printed(),
             "columns": self.heads,
             "rows": self.rows,
             "remarks": self.remarks,
@@ -179,21 +192,22 @@ impl Report {
         text
     }
 
-    /// Writes table, plot and numbers into a folder, and tells them.
+    /// Writes table, plot and numbers into a folder, and the page of all its tests anew, and tells the numbers.
     ///
     /// # Errors
     /// If they cannot be written.
-    pub fn deliver(&self, test: &str, title: &str, folder: &Path, as_json: bool) -> Result<(), Failure> {
+    pub fn deliver(&self, test: &str, by: By, title: &str, folder: &Path, as_json: bool) -> Result<(), Failure> {
         std::fs::create_dir_all(folder).map_err(|error| Failure::io(folder, "create", error))?;
         let svg = self.plot.to_svg().map_err(|error| Failure::new(Code::NotConverged, error))?;
-        let json = self.json(test, title, folder);
+        let json = self.json(test, by, title, folder);
         let json_text = serde_json::to_string_pretty(&json).map_err(|error| Failure::new(Code::Bug, error))? + "\n";
         let mut files = vec![(".csv", self.csv()), (".svg", svg), (".json", json_text)];
         files.extend(self.extras.iter().map(|extra| (&*extra.suffix, extra.text.clone())));
         for (suffix, text) in &files {
             let path = folder.join(format!("{test}{suffix}"));
-            write_atomically(&path, |out| std::io::Write::write_all(out, text.as_bytes()))?;
+            write_bytes_atomically(&path, text.as_bytes())?;
         }
+        let page = write_page(folder)?;
         if as_json {
             return output::json(&json);
         }
@@ -208,21 +222,9 @@ impl Report {
             say!("  {remark}")?;
         }
         let names: Vec<&str> = files.iter().map(|(suffix, _)| *suffix).collect();
-        say!("  {} ({})", folder.join(test).display(), names.join(", "))
+        say!("  {} ({})", folder.join(test).display(), names.join(", "))?;
+        say!("  {}", page.display())
     }
-}
-
-/// That no file of this test is there yet, unless it may be overwritten.
-///
-/// # Errors
-/// [`RecordError::NotEmpty`].
-pub fn refuse_taken(folder: &Path, test: &str, suffixes: &[&str], force: bool) -> Result<(), Failure> {
-    let taken = suffixes.iter().any(|suffix| folder.join(format!("{test}{suffix}")).exists());
-    if taken && !force {
-        let mend = "there is this test in it: choose another with `--out`, or overwrite it with `--force`";
-        return Err(RecordError::NotEmpty { path: folder.to_owned(), mend }.into());
-    }
-    Ok(())
 }
 
 #[cfg(test)]

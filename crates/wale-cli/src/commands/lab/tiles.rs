@@ -7,13 +7,14 @@ use wale::scene::Scene;
 use wale_lab::network_fit::{NetworkPull, NetworkPullSettings, relaxed_reference};
 use wale_lab::swatch_test::shrinkage_of_tile;
 use wale_lab::uniform_test::{
-    TestedTile, TileBendingTest, UniformStrip, UniformTestError, draw, stretch_at_load, tensile, tile_picture_frame,
-    tile_shear, uniform_fast,
+    TestedTile, TileBendingTest, UniformStrip, UniformTestError, draw, stretch_at_load, tensile, tile_cantilever,
+    tile_picture_frame, tile_shear, uniform_fast,
 };
 use wale_lab::virtual_test::stretch::Until;
 use wale_lab::virtual_test::units::{FAST_MM2, GF_CM_PER_CM, GF_CM2_PER_CM, GF_PER_CM, MM, PER_CM, PERCENT, UN_M};
 use wale_lab::virtual_test::{KesShearTest, KesTensileTest, PictureFrameTest, StretchTest};
 
+use super::bending::{cantilever_report, cantilever_test};
 use super::failure::TestFailure;
 use super::report::{Group, Number, Report, digits, direction_name, heads};
 use super::{in_plane, line, shear, yarns};
@@ -71,8 +72,7 @@ pub fn run(test: &Test, tested: &TestedTile, mass: Option<f64>, title: &str) -> 
         }
         Test::Cantilever(of) => {
             let mass = mass.ok_or_else(|| lacks_mass("cantilever"))?;
-            let mut groups = Vec::new();
-            let (mut rows, mut series) = (Vec::new(), Vec::new());
+            let mut all = Vec::new();
             for &angle in &of.directed.direction {
                 let rigidity = bend(angle)?.rigidity;
                 if rigidity.is_nan() || rigidity <= 0.0 {
@@ -80,32 +80,10 @@ pub fn run(test: &Test, tested: &TestedTile, mass: Option<f64>, title: &str) -> 
                         "its bending rigidity came out as {rigidity:e} N·m"
                     )));
                 }
-                let length = (rigidity / (mass * GRAVITY)).cbrt();
-                groups.push(Group {
-                    name: direction_name(angle),
-                    direction: Some(angle),
-                    numbers: vec![
-                        Number::new("overhang_m", 2.0 * length, "overhang", MM, "mm"),
-                        Number::new("c_m", length, "c, bending length", MM, "mm"),
-                        Number::new("G_N_m", rigidity, "G = W c³", UN_M, "µN·m"),
-                        Number::new("G_N_m", rigidity, "", GF_CM2_PER_CM, "gf·cm²/cm"),
-                    ],
-                });
-                rows.push(vec![angle.to_degrees(), length, rigidity]);
-                series.push(line(angle, [[0.0, 0.0], [2.0 * length / MM, 0.0]].into_iter()));
+                all.push((angle, tile_cantilever(rigidity, mass, &cantilever_test(of))?));
             }
-            Ok(Report {
-                what: format!("cantilever (ASTM D1388) by formula, from B of a {what}"),
-                groups,
-                heads: heads(["direction [deg]", "bending length [m]", "rigidity [N m]"]),
-                rows,
-                plot: Plot::lines(title, "overhang [mm]", "", &series),
-                remarks: vec![
-                    "a tile has no end that sinks: c is that of the standard's formula, B = W c³ at 41.5°, and holds for small curvatures of a fabric that is flat at rest"
-                        .to_owned(),
-                ],
-                extras: Vec::new(),
-            })
+            let kept = "a tile has no end that sinks: the strip is a heavy elastica of the tile's B, whatever its width, and holds for small curvatures of a fabric that is flat at rest";
+            Ok(of_tile(cantilever_report(&all, of.slope, title), what, kept))
         }
         Test::Fast(_) => {
             let rigidity = [bend(0.0)?.rigidity, bend(FRAC_PI_2)?.rigidity];

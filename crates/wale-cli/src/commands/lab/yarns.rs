@@ -16,6 +16,9 @@ use super::line;
 use super::report::{Group, Number, Report, digits, direction_name, heads};
 use crate::arguments::lab::Test;
 
+/// What the tensile test of KES is called.
+const KES: &str = "KES-FB1 tensile";
+
 /// A test on a swatch of a scene's yarns.
 ///
 /// # Errors
@@ -33,8 +36,7 @@ pub fn run(test: &Test, scene: &Scene, title: &str) -> Result<Report, TestFailur
         }
         Test::KesTensile(of) => {
             let base = KesTensileTest::default();
-            let kind = "KES-FB1 tensile";
-            clamped(scene, &of.direction, base.specimen, Until::LineLoad(base.load), kind, title)
+            clamped(scene, &of.direction, base.specimen, Until::LineLoad(base.load), KES, title)
         }
         Test::Curl(of) => Ok(curled(&curl(scene, of.columns as usize, of.rows as usize)?, title)),
         Test::Relaxation(of) => {
@@ -62,7 +64,7 @@ fn clamped(
             return Err(TestFailure::bad_input(what));
         }
         let found = ClampedSwatch::new(specimen, along_wales, until).run(scene)?;
-        groups.push(group(angle, &found));
+        groups.push(group(angle, &found, kind == KES));
         for (way, points) in [(1.0, &found.loading), (-1.0, &found.unloading)] {
             rows.extend(points.iter().map(|[s, f, c]| vec![angle.to_degrees(), way, *s, f * found.specimen.width, *c]));
         }
@@ -90,11 +92,15 @@ fn clamped(
     })
 }
 
-fn group(angle: f64, found: &ClampedResult) -> Group {
+fn group(angle: f64, found: &ClampedResult, is_kes: bool) -> Group {
     let last = found.loading[found.loading.len() - 1];
     let Specimen { length, width } = found.specimen;
     let initial = (found.loading[1][1] - found.loading[0][1]) / found.loading[1][0];
     let mut numbers = stretch_numbers(last[0], last[1] * width, width, last[2], initial);
+    if is_kes {
+        // It ends at the load of the instrument: what it is stretched by there has a name.
+        numbers[0] = Number::new("EMT", last[0], "EMT, extensibility", PERCENT, "%");
+    }
     numbers.extend([
         Number::new("LT", found.work / (0.5 * last[1] * last[0]), "LT, linearity", 1.0, ""),
         Number::new("WT_J_per_m2", found.work, "WT, work", GF_CM_PER_CM2, "gf·cm/cm²"),
