@@ -1,5 +1,6 @@
 //! Good scenes read, bad ones say what is wrong and where, and what is written reads back.
 
+mod cards;
 mod refusals;
 mod weaves;
 
