@@ -57,6 +57,7 @@ fn how_tables_are_understood_can_be_asked_for() {
     for says in [
         "stretch along the weft: 10 samples to 50.2 %",
         "line_force: column 2, \"line force (N/mm)\", in N/mm",
+        "table: comma between cells, decimal point, 3 lines before the numbers, 10 rows",
         "no bending test along the warp",
     ] {
         assert!(text.contains(says), "{says}: {text}");

@@ -101,6 +101,41 @@ fn rigidities_that_instruments_print_are_read() {
 }
 
 #[test]
+fn how_a_table_is_written_is_taken_from_the_fabric_file() {
+    let folder = folder();
+    fs::write(folder.path().join("warp.csv"), "strain (%)|force (N)\n0|0\n1|1,500\n2|2,750\n").unwrap();
+    let written = "file = \"warp.csv\"\ndelimiter = \"|\"\ndecimal = \",\"";
+    fs::write(folder.path().join("fabric.toml"), WHOLE.replace("file = \"warp.csv\"", written)).unwrap();
+    assert_eq!(read(folder.path()).unwrap().stretch[1].curve.force, [0.0, 1.5, 2.75]);
+    let tabs = fs::read_to_string(folder.path().join("warp.csv")).unwrap().replace('|', "\t");
+    fs::write(folder.path().join("warp.csv"), tabs).unwrap();
+    for tab in ["\\t", "tab"] {
+        let written = written.replace('|', tab);
+        fs::write(folder.path().join("fabric.toml"), WHOLE.replace("file = \"warp.csv\"", &written)).unwrap();
+        assert_eq!(read(folder.path()).unwrap().stretch[1].curve.force, [0.0, 1.5, 2.75]);
+    }
+}
+
+#[test]
+fn the_fabrics_of_the_project_are_read() {
+    let fabrics = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics");
+    let mut count = 0;
+    for folder in fs::read_dir(fabrics).unwrap() {
+        let fabric = FabricFile::read(&folder.unwrap().path().join("fabric.toml")).unwrap();
+        for test in &fabric.stretch {
+            let columns = &test.curve.read_as;
+            assert!(
+                columns[0].starts_with("stretch: column 1, ") && columns[1].contains("force: column 2, "),
+                "{columns:?}"
+            );
+            assert!(columns[2].contains("column 3, "), "{columns:?}");
+        }
+        count += 1;
+    }
+    assert!(count >= 7);
+}
+
+#[test]
 fn what_is_wrong_is_said_where_it_stands() {
     let cases = [
         ("schema = 1", "schema = 7", "fabric.toml:2:10: schema 7 is not known"),
@@ -118,6 +153,9 @@ fn what_is_wrong_is_said_where_it_stands() {
             "warp.csv: has no column \"Load\"",
         ),
         ("file = \"warp.csv\"", "file = \"warp.csv\"\nunits = { force = \"mm\" }", "no unit of it"),
+        ("file = \"warp.csv\"", "file = \"warp.csv\"\ndelimiter = \":\"", "unknown value `:`"),
+        ("file = \"warp.csv\"", "file = \"warp.csv\"\ndecimal = \";\"", "fabric.toml:24:11: unknown value `;`"),
+        ("file = \"warp.csv\"", "file = \"warp.csv\"\ndelimiter = \";\"", "has no row with two numbers"),
         ("file = \"warp.csv\"", "file = \"warp.csv\"\nonly = { trial = \"3\" }", "to choose rows by"),
     ];
     for (from, to, says) in cases {

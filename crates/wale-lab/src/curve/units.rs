@@ -51,6 +51,11 @@ impl Kind {
         self.units().iter().find(|(name, _)| *name == unit).map(|(_, size)| *size)
     }
 
+    fn of(unit: &str) -> Option<(Self, f64)> {
+        let kinds = [Self::Force, Self::Length, Self::Ratio, Self::LineForce];
+        kinds.into_iter().find_map(|kind| Some((kind, kind.size(unit)?)))
+    }
+
     /// The units of this kind, for messages.
     pub fn known(self) -> String {
         self.units().iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
@@ -58,8 +63,8 @@ impl Kind {
 }
 
 /// Whether some kind has this unit.
-fn is_unit(text: &str) -> bool {
-    [Kind::Force, Kind::Length, Kind::Ratio, Kind::LineForce].iter().any(|kind| kind.size(text).is_some())
+pub(super) fn is_unit(text: &str) -> bool {
+    Kind::of(text).is_some()
 }
 
 /// The words of a head and its unit: `Load (cN)`, `Dehnung [%]`, `force_N`, `line_force_N_per_mm`, `Load, N`, `Load / N`.
@@ -86,9 +91,41 @@ pub(super) fn split_head(head: &str) -> (String, Option<String>) {
     (head.to_owned(), None)
 }
 
+/// All units that a head claims: the one that [`split_head`] finds, and then those that contradict it. `Load (N) (cN)` claims two,
+/// and so does `force_N (cN)`.
+pub(super) fn claimed_units(head: &str) -> Vec<String> {
+    let (words, unit) = split_head(head);
+    let Some(unit) = unit else { return Vec::new() };
+    let Some(first) = Kind::of(&unit) else { return vec![unit] };
+    let brackets = head.split(['(', '[', '<']).skip(1).filter_map(|part| part.split([')', ']', '>']).next());
+    // `Weg in (mm)` is in millimetres, not in inches.
+    let words = words.strip_suffix(" in").unwrap_or(&words);
+    let contradicts = |claim: &String| {
+        // Beside a force, `(1)` and `(-)` are no units.
+        let is_sign = first.0 != Kind::Ratio && ["1", "-", "–"].contains(&claim.as_str());
+        !is_sign && Kind::of(claim).is_some_and(|claim| claim != first)
+    };
+    let others: Vec<String> =
+        brackets.map(|text| text.trim().to_owned()).chain(split_head(words).1).filter(contradicts).collect();
+    [unit].into_iter().chain(others).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn heads_may_claim_units_that_contradict_each_other() {
+        let one = ["Load (N)", "Load (N) (N)", "Load (1) (MPa)", "Weg in (mm)", "Load (N) (1)", "Strain % (percent)"];
+        for head in one.into_iter().chain(["line_force_N_per_mm (N/mm)", "Load (N) (raw)"]) {
+            assert_eq!(claimed_units(head).len(), 1, "{head}");
+        }
+        assert_eq!(claimed_units("Load (N) (cN)"), ["N", "cN"]);
+        assert_eq!(claimed_units("force_N (cN)"), ["cN", "N"]);
+        assert_eq!(claimed_units("Strain (%) (-)"), ["%", "-"]);
+        assert_eq!(claimed_units("Force (N) [N/mm]"), ["N", "N/mm"]);
+        assert!(claimed_units("Load").is_empty());
+    }
 
     #[test]
     fn heads_are_words_and_a_unit() {

@@ -12,7 +12,7 @@ use wale::scene::{Scene, TextFile};
 use super::known::known;
 use super::schema::{FabricText, StructureText, TestText};
 use super::{FabricFile, FabricFileError, LoopTest, Rigidity, SCHEMA, StretchTest, Structure, Yarn};
-use crate::curve::{LoopCurve, Request, Specimen, StretchCurve, Table};
+use crate::curve::{LoopCurve, Request, Specimen, StretchCurve, Table, TableFormat};
 use crate::yarn_tile::RodParameter;
 
 /// How far the shares of the yarns may be from the whole \[–\].
@@ -61,7 +61,7 @@ pub(super) fn fabric(path: &Path, file: &TextFile) -> Result<FabricFile, FabricF
             let what = "a loop is clamped".to_owned();
             return Err(file.error(&format!("bending.{index}.uniform"), what, "leave it out").into());
         }
-        let curve = LoopCurve::of(&read.table, &read.request)?;
+        let curve = LoopCurve::of(&read.table, &read.request, read.specimen)?;
         bending.push(LoopTest { direction: read.direction, specimen: read.specimen, curve });
     }
     let mut rigidity = Vec::new();
@@ -149,7 +149,7 @@ impl Reading {
                 length: text.length.map_or(SPECIMEN.length, Quantity::si),
                 width: text.width.map_or(SPECIMEN.width, Quantity::si),
             },
-            table: Table::read(&path)?,
+            table: Table::read(&path, TableFormat { delimiter: text.delimiter, decimal: text.decimal })?,
             request: Request { columns: text.columns.clone(), units: text.units.clone(), only: text.only.clone() },
         })
     }

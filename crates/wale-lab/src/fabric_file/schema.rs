@@ -8,7 +8,7 @@ use wale::scene::units::{Dimension, Fraction, Positive, Quantity};
 
 use super::known::{HeldText, WithinText};
 use crate::card_file::SheetBending;
-use crate::curve::{ColumnName, Meaning};
+use crate::curve::{ColumnName, Decimal, Delimiter, Meaning};
 
 /// Mass per area \[kg/m²\].
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -115,6 +115,10 @@ pub struct TestText {
     /// or of a strain field that a camera saw. Only for stretch.
     #[serde(default)]
     pub uniform: bool,
+    /// What separates the cells of the table, where it does not tell: ",", ";", "|" or "\t".
+    pub delimiter: Option<Delimiter>,
+    /// The sign before its decimals, where it does not tell: "." or ",".
+    pub decimal: Option<Decimal>,
     /// Which column is what, by its head or its number from 1, where the heads do not tell: `{ force = "Load", stretch = 3 }`.
     #[serde(default)]
     pub columns: BTreeMap<Meaning, ColumnName>,

@@ -28,13 +28,13 @@ pub fn reading(fabric: &FabricFile) -> Result<(), Failure> {
             test.curve.stretch.len(),
             100.0 * stretch
         )?;
-        for line in &test.curve.read_as {
+        for line in [&test.curve.table_read_as].into_iter().chain(&test.curve.read_as) {
             say!("    {line}")?;
         }
     }
     for test in &fabric.bending {
         say!("  loops along the {}: {}", direction_name(test.direction), test.curve.distance.len())?;
-        for line in &test.curve.read_as {
+        for line in [&test.curve.table_read_as].into_iter().chain(&test.curve.read_as) {
             say!("    {line}")?;
         }
     }
@@ -57,12 +57,14 @@ pub fn read_json(fabric: &FabricFile) -> serde_json::Value {
             "force_N": test.curve.force,
             "compression": test.curve.compression,
             "read_as": test.curve.read_as,
+            "table_read_as": test.curve.table_read_as,
         })).collect::<Vec<_>>(),
         "bending": fabric.bending.iter().map(|test| json!({
             "direction_rad": test.direction,
             "clamp_distance_m": test.curve.distance,
             "aspect_ratio": test.curve.aspect_ratio,
             "read_as": test.curve.read_as,
+            "table_read_as": test.curve.table_read_as,
         })).collect::<Vec<_>>(),
         "rigidity": fabric.rigidity.iter().map(|test| json!({
             "direction_rad": test.direction,
