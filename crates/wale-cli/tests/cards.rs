@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use wale::scene::TextFile;
-use wale_lab::card_file::CardFile;
+use wale::scene::{Scene, TextFile};
+use wale_lab::card_file::{CardFile, ContactStiffness};
 use wale_lab::fabric_file::FabricFile;
 use wale_lab::yarn_tile::read_pattern;
 
@@ -46,9 +46,25 @@ fn five_fabrics_have_what_a_sheet_of_them_needs() {
             let text = fs::read_to_string(&tile).unwrap();
             read_pattern(&tile.display().to_string(), &text).unwrap_or_else(|error| panic!("{error}"));
         }
+        if let Some(contacts) = &card.contacts {
+            assert!(folder.join(&contacts.scene).is_file() && !contacts.numbers.is_empty(), "{}", folder.display());
+        }
         hangs(&card)
     });
     assert!(ready.count() >= 5);
+}
+
+#[test]
+fn a_yarn_that_was_fitted_is_knitted_in_another_pattern() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fabrics/acrylic-stockinette");
+    let [rib, swatch] = ["rib.toml", "swatch.toml"].map(|name| Scene::read(&folder.join(name)).unwrap());
+    assert_eq!((&rib.yarns, &rib.fabric), (&swatch.yarns, &swatch.fabric));
+    let contacts = card(&folder).contacts.unwrap();
+    let stretch = contacts.numbers.iter().find(|number| number.name == "stretch").unwrap();
+    assert_eq!(stretch.stiffness, ContactStiffness::Force(rib.yarns.first().stretch_stiffness));
+    // Nobody measured its shear: it is about a third of what it is along its courses, as its yarn foretells, and no nothing.
+    let membrane = card(&folder).membrane;
+    assert!(membrane.ss > 0.1 * membrane.xx && membrane.ss < membrane.xx, "{membrane:?}");
 }
 
 #[test]

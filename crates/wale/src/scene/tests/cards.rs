@@ -34,7 +34,7 @@ fn read(folder: &Path) -> Result<Scene, String> {
 }
 
 const RIB: &str =
-    "schema = 1\n[yarn]\ncard = \"card.toml\"\n[fabric.chart]\npattern = \"rib\"\ncolumns = 6\nrows = 4\n";
+    "schema = 1\n[yarn]\ncard = \"card.toml\"\n[fabric.chart]\npattern = \"rib 1x1\"\ncolumns = 6\nrows = 4\n";
 
 #[test]
 fn a_card_stands_behind_another_chart() {
@@ -54,7 +54,7 @@ fn a_card_stands_behind_another_chart() {
 
 #[test]
 fn a_card_stands_behind_another_weave() {
-    let twill = "schema = 1\n[yarn]\ncard = \"card.toml\"\n[fabric.weave]\npattern = \"twill-2-1\"\nends = 6\npicks = 6\n\
+    let twill = "schema = 1\n[yarn]\ncard = \"card.toml\"\n[fabric.weave]\npattern = \"twill 2/1\"\nends = 6\npicks = 6\n\
         end_spacing = \"0.4 mm\"\npick_spacing = \"0.5 mm\"\nwarp = [\"A\"]\nweft = [\"B\"]\n";
     let (folder, fitted) = folder(WEAVE, twill);
     let scene = read(folder.path()).unwrap();
@@ -75,7 +75,7 @@ fn cards_that_cannot_stand_behind_a_scene_are_refused() {
         ("card = ", "preset = \"worsted-wool\"\ncard = ", "the yarn has a preset and a card"),
         ("[fabric.chart]", "[fabric]\nloop_length = \"9 mm\"\n[fabric.chart]", "loop_length beside a card"),
         (
-            "[fabric.chart]\npattern = \"rib\"\ncolumns = 6\nrows = 4\n",
+            "[fabric.chart]\npattern = \"rib 1x1\"\ncolumns = 6\nrows = 4\n",
             "[fabric.weave]\npattern = \"plain\"\nends = 4\npicks = 4\nend_spacing = \"2 mm\"\npick_spacing = \"2 mm\"\n",
             "the card is of a knit, the fabric a weave",
         ),
