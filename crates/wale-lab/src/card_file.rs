@@ -1,15 +1,22 @@
 //! Fabric cards as files: what was fitted to a fabric, in TOML, with the factor within which each number is known.
 
+mod contacts;
+mod yarn;
+
 use std::fmt::Write;
 
 use serde::Deserialize;
-use wale::energy::{BendingStiffness, ContactPhase, ContactReading, MembraneStiffness};
-use wale::scene::dimensions::{BendingStiffness as BendingOfYarn, Force, ForcePerLength, Length, Pressure, Ratio};
+use wale::energy::{BendingStiffness, MembraneStiffness};
+use wale::scene::dimensions::{ForcePerLength, Ratio};
 use wale::scene::units::{Any, Dimension, NotNegative, Positive, Quantity};
 use wale::scene::{SceneError, TextFile};
 
 use crate::fabric_file::ArealMass;
-use crate::yarn_tile::{RodMaterial, RodParameter};
+use contacts::ContactsText;
+use yarn::YarnText;
+
+pub use contacts::{ContactNumber, ContactStiffness, ContactsCard};
+pub use yarn::YarnCard;
 
 /// Version of the format.
 pub const SCHEMA: u32 = 1;
@@ -25,47 +32,6 @@ impl Dimension for SheetBending {
         &[("N m", 1.0), ("uN m", 1e-6), ("gf cm^2/cm", 9.806_65e-5), ("mN mm", 1e-6)];
     const EXAMPLE: &'static str = "\"5 uN m\"";
     const LARGEST: f64 = 10.0;
-}
-
-/// The yarn of a fabric, in full contact.
-#[derive(Clone, Debug, PartialEq)]
-pub struct YarnCard {
-    /// What it is made of.
-    pub material: RodMaterial,
-    /// Factors within which its numbers are known with 95 % confidence, in the order of `RodParameter::ALL`; one where a number was
-    /// held, infinite where the data do not say.
-    pub within: [f64; RodParameter::COUNT],
-    /// The file with its tile and rest shapes, beside the card.
-    pub tile: String,
-}
-
-/// The contact model of a fabric.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactsCard {
-    /// The file with the scene that has all of its numbers, beside the card.
-    pub scene: String,
-    /// Those that were fitted.
-    pub numbers: Vec<ContactNumber>,
-}
-
-/// A number of the contact model.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ContactNumber {
-    /// What it is called.
-    pub name: String,
-    /// Its value.
-    pub stiffness: ContactStiffness,
-    /// Factor within which it is known with 95 % confidence, infinite where the data do not say.
-    pub within: f64,
-}
-
-/// A stiffness of the contact model, of either dimension.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ContactStiffness {
-    /// Against everything else \[N\].
-    Force(f64),
-    /// Against bending of a yarn \[N·m²\].
-    Bending(f64),
 }
 
 /// A fabric, as far as its tests told.
@@ -87,79 +53,6 @@ pub struct CardFile {
     pub contacts: Option<ContactsCard>,
     /// What its tests left open, and what was assumed and not measured, in words.
     pub open: Vec<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-#[allow(non_snake_case)]
-struct YarnText {
-    k_s1: Quantity<Force, Positive>,
-    k_s2: Quantity<Force, Positive>,
-    onset: Quantity<Ratio, NotNegative>,
-    k_b: Quantity<BendingOfYarn, NotNegative>,
-    R_1: Quantity<Length, Positive>,
-    k_c1: Quantity<ForcePerLength, NotNegative>,
-    k_h: Quantity<Pressure, NotNegative>,
-    R_2: Quantity<Length, Positive>,
-    k_c2: Quantity<ForcePerLength, NotNegative>,
-    contact: ContactReading,
-    within: [f64; RodParameter::COUNT],
-    tile: String,
-}
-
-impl YarnText {
-    fn card(self) -> YarnCard {
-        let outer = ContactPhase { radius: self.R_1.si(), stiffness: self.k_c1.si() };
-        let inner = ContactPhase { radius: self.R_2.si(), stiffness: self.k_c2.si() };
-        YarnCard {
-            material: RodMaterial {
-                soft_stretch: self.k_s1.si(),
-                stiff_stretch: self.k_s2.si(),
-                onset: self.onset.si(),
-                bending: self.k_b.si(),
-                contact: [outer, inner],
-                reading: self.contact,
-                holding: self.k_h.si(),
-            },
-            within: self.within,
-            tile: self.tile,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ContactsText {
-    scene: String,
-    numbers: Vec<ContactNumberText>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ContactNumberText {
-    name: String,
-    stiffness: Option<Quantity<Force, NotNegative>>,
-    bending_stiffness: Option<Quantity<BendingOfYarn, NotNegative>>,
-    within: f64,
-}
-
-impl ContactsText {
-    fn card(self, file: &TextFile) -> Result<ContactsCard, SceneError> {
-        let number = |(index, text): (usize, ContactNumberText)| {
-            let stiffness = match (text.stiffness, text.bending_stiffness) {
-                (Some(force), None) => ContactStiffness::Force(force.si()),
-                (None, Some(bending)) => ContactStiffness::Bending(bending.si()),
-                _ => {
-                    let what = format!("{} has not one value", text.name);
-                    let mend = "give a stiffness or a bending_stiffness";
-                    return Err(file.error(&format!("contacts.numbers.{index}"), what, mend));
-                }
-            };
-            Ok(ContactNumber { name: text.name, stiffness, within: text.within })
-        };
-        let numbers = self.numbers.into_iter().enumerate().map(number).collect::<Result<_, _>>()?;
-        Ok(ContactsCard { scene: self.scene, numbers })
-    }
 }
 
 #[derive(Deserialize)]
@@ -285,48 +178,6 @@ impl CardFile {
     }
 }
 
-impl YarnCard {
-    fn write(&self, text: &mut String) {
-        text.push_str(
-            "\n# Its yarn in full contact [Sperl2022, Eqs. 5 to 7]; k_h is how it sticks to yarns that it touches.\n[yarn]\n",
-        );
-        let units = ["N", "N", "", "N m^2", "m", "N/m", "Pa"];
-        for ((name, value), unit) in RodParameter::NAMES.into_iter().zip(self.material.parameters()).zip(units) {
-            let _ = match unit {
-                "" => writeln!(text, "{name} = {value:?}"),
-                unit => writeln!(text, "{name} = \"{value:?} {unit}\""),
-            };
-        }
-        let [_, inner] = self.material.contact;
-        let _ = writeln!(text, "R_2 = \"{:?} m\"\nk_c2 = \"{:?} N/m\"", inner.radius, inner.stiffness);
-        let reading = match self.material.reading {
-            ContactReading::SquareOfBarrier => "square_of_barrier",
-            ContactReading::Barrier => "barrier",
-            ContactReading::BarrierOfSquare => "barrier_of_square",
-        };
-        let _ = writeln!(text, "contact = \"{reading}\"");
-        let within: Vec<String> = self.within.iter().map(|&factor| number(factor)).collect();
-        let _ = writeln!(text, "within = [{}]\ntile = {}", within.join(", "), toml_string(&self.tile));
-    }
-}
-
-impl ContactsCard {
-    fn write(&self, text: &mut String) {
-        text.push_str(
-            "\n# Its contact model [Cirio2017]: other scenes have its numbers by `[yarn] card = \"card.toml\"`.\n[contacts]\n",
-        );
-        let _ = writeln!(text, "scene = {}\nnumbers = [", toml_string(&self.scene));
-        for ContactNumber { name, stiffness, within } in &self.numbers {
-            let value = match stiffness {
-                ContactStiffness::Force(value) => format!("stiffness = \"{value:?} N\""),
-                ContactStiffness::Bending(value) => format!("bending_stiffness = \"{value:?} N m^2\""),
-            };
-            let _ = writeln!(text, "    {{ name = {}, {value}, within = {} }},", toml_string(name), number(*within));
-        }
-        text.push_str("]\n");
-    }
-}
-
 /// A number as TOML has it: always with a point, or `inf`.
 fn number(value: f64) -> String {
     format!("{value:?}")
@@ -351,7 +202,10 @@ fn toml_string(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    use wale::energy::ContactReading;
+
     use super::*;
+    use crate::yarn_tile::RodMaterial;
 
     #[test]
     fn a_card_survives_being_written() {

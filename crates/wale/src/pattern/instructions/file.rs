@@ -5,7 +5,8 @@ use std::collections::hash_map::Entry;
 use std::ops::Range;
 
 use super::lexer::Line;
-use super::row::{self, Row};
+use super::parts::{Row, work};
+use super::row;
 use super::yarns::Yarns;
 use super::{InstructionError, InstructionErrorReason as Reason, Written};
 use crate::pattern::chart::Chart;
@@ -283,7 +284,7 @@ impl Reader {
                 source.push(body);
                 let stitches = match (worked.entry((body, total)), &self.bodies[body]) {
                     (Entry::Occupied(known), _) => known.into_mut(),
-                    (Entry::Vacant(new), Body::Parts(parts)) => new.insert(row::work(parts, total, row)?),
+                    (Entry::Vacant(new), Body::Parts(parts)) => new.insert(work(parts, total, row)?),
                     // Repeats are followed to parts.
                     (Entry::Vacant(new), Body::Again { .. }) => new.insert(Vec::new()),
                 };

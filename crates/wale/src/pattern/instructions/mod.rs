@@ -22,6 +22,7 @@
 
 mod file;
 mod lexer;
+mod parts;
 mod row;
 #[cfg(test)]
 mod tests;
