@@ -87,9 +87,11 @@ impl TileBendingTest {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
     use crate::yarn_fit::PullSettings;
-    use crate::yarn_tile::test_tiles::{basket, straight};
-    use crate::yarn_tile::{EquilibriumSettings, RodMaterial, bending_stiffness};
+    use crate::yarn_tile::test_tiles::{basket, stockinette, straight};
+    use crate::yarn_tile::{EquilibriumSettings, RestShape, RodMaterial, bending_stiffness};
 
     /// A plain weave, quickly at rest.
     pub fn woven() -> TestedTile {
@@ -121,9 +123,25 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn a_yarn_that_is_bent_at_rest_curls_to_its_side() {
-        // The lower yarns of one side of a weave made stiffer would curl it; a weave alike on both sides does not.
+    fn a_weave_that_is_alike_on_both_sides_does_not_curl() {
         let found = TileBendingTest::default().run(&woven()).unwrap();
         assert!(found.own_curvature.abs() < 1e-2 * found.largest, "{found:?}");
+    }
+
+    #[test]
+    fn stockinette_of_yarns_that_would_be_straight_rolls_its_sides_to_the_back_and_its_ends_to_the_front() {
+        // The heads and sinkers of this tile lie above its legs: its upper side is the back.
+        let tile = stockinette();
+        let lengths = tile.lengths();
+        let tile = tile.with_rest(RestShape::straight(lengths)).unwrap();
+        // What sticks keeps them from sliding into another loop.
+        let rod = RodMaterial::solid_rod(tile.radius(), 1e6, 10.0);
+        let material = RodMaterial { holding: rod.bending / tile.radius().powi(4), ..rod };
+        let tested = TestedTile { material, tile, ..woven() };
+        let along =
+            |angle: f64| TileBendingTest { angle, points: 2, ..TileBendingTest::default() }.run(&tested).unwrap();
+        let (course, wale) = (along(0.0), along(FRAC_PI_2));
+        assert!(course.own_curvature > 0.1 * course.largest && course.flat_moment < 0.0, "{course:?}");
+        assert!(wale.own_curvature < -0.1 * wale.largest && wale.flat_moment > 0.0, "{wale:?}");
     }
 }
