@@ -47,6 +47,8 @@ pub struct CardFile {
     pub membrane_within: [f64; MembraneStiffness::COUNT],
     /// Bending stiffnesses \[N·m\], if loops were measured.
     pub bending: Option<BendingStiffness>,
+    /// Factors within which these are known with 95 % confidence, if loops were fitted.
+    pub bending_within: Option<[f64; BendingStiffness::COUNT]>,
     /// Its yarn, if it was fitted.
     pub yarn: Option<YarnCard>,
     /// Its contact model, if that was fitted.
@@ -83,6 +85,7 @@ struct ShellText {
     m_xy: Option<Quantity<Ratio, Any>>,
     within: Vec<f64>,
     bending: Option<[Quantity<SheetBending, Positive>; BendingStiffness::COUNT]>,
+    bending_within: Option<[f64; BendingStiffness::COUNT]>,
 }
 
 impl CardFile {
@@ -123,6 +126,9 @@ impl CardFile {
             text.push_str("# Along the weft, the bias and the warp.\n");
             let values: Vec<String> = bending.to_array().iter().map(|value| format!("\"{value:?} N m\"")).collect();
             let _ = writeln!(text, "bending = [{}]", values.join(", "));
+        }
+        if let Some(within) = self.bending_within {
+            let _ = writeln!(text, "bending_within = [{}]", within.map(number).join(", "));
         }
         if let Some(yarn) = &self.yarn {
             yarn.write(&mut text);
@@ -171,6 +177,7 @@ impl CardFile {
             membrane,
             membrane_within: within,
             bending: shell.bending.map(|three| BendingStiffness::from_array(three.map(Quantity::si))),
+            bending_within: shell.bending_within,
             yarn: text.yarn.map(YarnText::card),
             contacts: text.contacts.map(|contacts| contacts.card(file)).transpose()?,
             open: text.open,
@@ -223,6 +230,7 @@ mod tests {
             },
             membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.0, 1.0, 1.0, 1.0],
             bending: Some(BendingStiffness { weft: 1e-6, bias: 2e-6, warp: 1.0 / 3e5 }),
+            bending_within: Some([1.5, f64::INFINITY, 1.0]),
             yarn: None,
             contacts: None,
             open: vec!["k_ss is \"open\"".to_owned(), "assumed: all".to_owned()],
@@ -249,7 +257,9 @@ mod tests {
             membrane_within: [1.02, 3.5, 1.1, 2.0, f64::INFINITY, 1e9, 1.5, f64::INFINITY, 2.0, 1.25],
             ..card.clone()
         };
-        for card in [CardFile { areal_mass: None, bending: None, ..card.clone() }, card, whole, stiffens] {
+        for card in
+            [CardFile { areal_mass: None, bending: None, bending_within: None, ..card.clone() }, card, whole, stiffens]
+        {
             let read = CardFile::of(&TextFile::new(&card.to_toml(), "card.toml")).unwrap();
             assert_eq!(read, card);
         }
@@ -271,6 +281,7 @@ mod tests {
             },
             membrane_within: [1.0; MembraneStiffness::COUNT],
             bending: None,
+            bending_within: None,
             yarn: None,
             contacts: None,
             open: Vec::new(),

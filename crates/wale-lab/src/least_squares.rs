@@ -128,8 +128,17 @@ pub fn fit<const P: usize, E: Send>(
     let Some(best) = found.into_iter().reduce(|best, next| if next.cost < best.cost { next } else { best }) else {
         return Ok(None);
     };
-    let (squares, combinations) = symmetric_eigen(&best.here.normal());
-    let freedom = best.here.values.len().saturating_sub(P).max(1);
+    // What is held is known: the others are no less certain for it.
+    let mut normal = best.here.normal();
+    let held = |k: usize| !settings.is_free(k);
+    for i in 0..P {
+        for j in (0..P).filter(|&j| held(i) || held(j)) {
+            normal[i][j] = 0.0;
+        }
+    }
+    let (squares, combinations) = symmetric_eigen(&normal);
+    let fitted = (0..P).filter(|&k| settings.is_free(k)).count();
+    let freedom = best.here.values.len().saturating_sub(fitted).max(1);
     let noise = (best.cost / freedom as f64).max(settings.least_noise * settings.least_noise);
     let mut uncertainty = [1.0; P];
     for (k, factor) in uncertainty.iter_mut().enumerate().filter(|(k, _)| settings.is_free(*k)) {
@@ -266,6 +275,48 @@ mod tests {
         assert_eq!(fit.undetermined(), [2]);
         assert!(fit.singular_values[0] < 1e-9 && fit.combinations[0][2].abs() > 0.999);
         assert!(fit.uncertainty[0] < 1.1 && fit.uncertainty[2].is_infinite());
+    }
+
+    /// How often, of so many fits to noisy data, the truth of `a` and of `b` lies within their intervals; `held` keeps `b` where it is.
+    fn covered(held: bool) -> [f64; 2] {
+        const FITS: usize = 400;
+        const NOISE: f64 = 0.05;
+        let truth = [3.0, 0.7];
+        let bounds = [[1e-6, 1e6], if held { [truth[1]; 2] } else { [1e-6, 1e6] }];
+        let settings = LeastSquaresSettings::<2> { bounds, least_noise: 1e-6, ..settings() };
+        let mut state = 7_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut counts = [0usize; 2];
+        for _ in 0..FITS {
+            // Sums of twelve are normal enough.
+            let noise: Vec<f64> = (0..20).map(|_| NOISE * ((0..12).map(|_| uniform()).sum::<f64>() - 6.0)).collect();
+            let evaluate = |&[a, b]: &[f64; 2]| {
+                let mut out = Residuals::default();
+                for (k, noise) in noise.iter().enumerate() {
+                    let t = 0.15 * k as f64;
+                    let y = a * (-b * t).exp();
+                    out.push(y - truth[0] * (-truth[1] * t).exp() - noise, [y, -b * t * y]);
+                }
+                Some(out)
+            };
+            let fit = fit_positive(evaluate, &[[2.0, truth[1]]], &settings).unwrap();
+            for (k, count) in counts.iter_mut().enumerate() {
+                *count += usize::from((fit.parameters[k] / truth[k]).ln().abs() <= fit.uncertainty[k].ln());
+            }
+        }
+        counts.map(|count| count as f64 / FITS as f64)
+    }
+
+    #[test]
+    fn nineteen_of_twenty_intervals_hold_the_truth() {
+        for (held, fitted) in [(false, 2), (true, 1)] {
+            for part in &covered(held)[..fitted] {
+                assert!((0.91..=0.98).contains(part), "{part} of {fitted}");
+            }
+        }
     }
 
     #[test]

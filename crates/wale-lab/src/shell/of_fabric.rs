@@ -135,6 +135,7 @@ pub fn fit_shell(fabric: &FabricFile, settings: &MembraneFitSettings) -> Result<
         membrane: membrane.stiffness,
         membrane_within: membrane.least_squares.uncertainty,
         bending: bending.as_ref().map(|fit| fit.stiffness).or_else(|| printed(&fabric.rigidity, &mut open)),
+        bending_within: bending.as_ref().map(|fit| fit.least_squares.uncertainty),
         yarn: None,
         contacts: None,
         open: open.clone(),

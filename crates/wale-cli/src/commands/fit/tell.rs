@@ -91,6 +91,7 @@ pub fn found_json(
         "membrane_within": factors(&found.card.membrane_within[..used]),
         "force_error": found.membrane.force_error,
         "compression_error": found.membrane.compression_error,
+        "bending_within": found.bending.as_ref().map(|fit| factors(&fit.least_squares.uncertainty)),
         "bending_N_m": found.bending.as_ref().map(|fit| fit.stiffness.to_array()),
         "aspect_error": found.bending.as_ref().map(|fit| fit.aspect_error),
         "yarn": yarn.map(|yarn| json!({
@@ -131,14 +132,16 @@ pub fn lines(found: &ShellFit, yarn: Option<&YarnFit>, contacts: Option<&Network
     for ((name, value), within) in
         MembraneStiffness::NAMES.into_iter().zip(values).zip(found.card.membrane_within).take(used)
     {
-        let known = if within <= 3.0 { format!("× or ÷ {within:.2}") } else { "not determined".to_owned() };
+        let known = known_within(within);
         let unit = if name == "m_xy" { "   " } else { "N/m" };
         lines.push(format!("  {name} {value:10.3} {unit}   {known}"));
     }
     if let Some(bending) = &found.bending {
         lines.push(format!("bending: mean error {:.1} % of the loops' aspect", 100.0 * bending.aspect_error));
-        for (name, value) in BendingStiffness::NAMES.into_iter().zip(bending.stiffness.to_array()) {
-            lines.push(format!("  {name} {:10.3} µN·m", 1e6 * value));
+        let within = bending.least_squares.uncertainty;
+        for ((name, value), within) in BendingStiffness::NAMES.into_iter().zip(bending.stiffness.to_array()).zip(within)
+        {
+            lines.push(format!("  {name} {:10.3} µN·m   {}", 1e6 * value, known_within(within)));
         }
     }
     if let Some(yarn) = yarn {
@@ -171,6 +174,11 @@ pub fn lines(found: &ShellFit, yarn: Option<&YarnFit>, contacts: Option<&Network
     }
     lines.extend(found.open.iter().map(|open| format!("  {open}")));
     lines
+}
+
+/// The factor within which a number is known, in words.
+fn known_within(factor: f64) -> String {
+    if factor <= 3.0 { format!("× or ÷ {factor:.2}") } else { "not determined".to_owned() }
 }
 
 fn errors(error: &YarnFitError) -> String {
