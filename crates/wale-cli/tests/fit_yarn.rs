@@ -156,6 +156,23 @@ fn a_fit_that_is_killed_goes_on_to_the_same_card_and_keeps_to_what_is_known() {
     assert_eq!(fs::read_to_string(out("killed").join("card.toml")).unwrap(), card);
 }
 
+#[test]
+fn a_tile_from_a_file_is_fitted_as_one_of_a_chart_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let fabric = fits::small_fabric(folder.path(), "tile", "stockinette", [0.4, 1.2, 3.0]);
+    fs::copy(acrylic().join("tile.pyp"), fabric.with_file_name("tile.pyp")).unwrap();
+    let text = fs::read_to_string(&fabric).unwrap().replace("scene = \"scene.toml\"", "tile = \"tile.pyp\"");
+    fs::write(&fabric, text).unwrap();
+    let out = folder.path().join("out");
+    let done = fits::fit(&[&fabric], &["--out", out.to_str().unwrap(), "--json"], "");
+    assert!(done.status.success(), "{}", said(&done));
+    let found: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert!(found["yarn"]["error"]["comfort"].as_f64().unwrap() < 0.5, "{}", found["yarn"]["error"]);
+    assert!(found["contacts"].is_null() && !out.join("swatch.toml").exists(), "a file of curves is no chart");
+    let card = CardFile::of(&TextFile::read(&out.join("card.toml"), "card").unwrap()).unwrap();
+    assert!(card.yarn.is_some_and(|yarn| out.join(yarn.tile).is_file()) && card.contacts.is_none());
+}
+
 fn asked_problem(questions: &str) -> String {
     let line: serde_json::Value = serde_json::from_str(questions.lines().next().unwrap()).unwrap();
     line["problem"].as_str().unwrap().to_owned()
