@@ -59,10 +59,8 @@ fn membrane(
     tested: &TestedTile,
 ) -> Option<(MembraneStiffness, Vec<StretchCurve>)> {
     let open: Vec<usize> = open_stiffnesses(shell).collect();
-    let untested = |angle: &f64| !fabric.stretch.iter().any(|test| (test.direction - angle).abs() < 0.02);
     let largest = fabric.stretch.iter().filter_map(|test| test.curve.stretch.last().copied()).reduce(f64::min)?;
-    let angles = [0.0, FRAC_PI_4, FRAC_PI_2].into_iter().filter(untested);
-    let curves: Vec<StretchCurve> = angles.filter_map(|angle| curve(tested, angle, largest)).collect();
+    let curves: Vec<StretchCurve> = fabric.unstretched().filter_map(|angle| curve(tested, angle, largest)).collect();
     if open.is_empty() || curves.is_empty() {
         return None;
     }

@@ -128,15 +128,7 @@ pub fn fit<const P: usize, E: Send>(
     let Some(best) = found.into_iter().reduce(|best, next| if next.cost < best.cost { next } else { best }) else {
         return Ok(None);
     };
-    // What is held is known: the others are no less certain for it.
-    let mut normal = best.here.normal();
-    let held = |k: usize| !settings.is_free(k);
-    for i in 0..P {
-        for j in (0..P).filter(|&j| held(i) || held(j)) {
-            normal[i][j] = 0.0;
-        }
-    }
-    let (squares, combinations) = symmetric_eigen(&normal);
+    let (squares, combinations) = symmetric_eigen(&best.here.normal());
     let fitted = (0..P).filter(|&k| settings.is_free(k)).count();
     let freedom = best.here.values.len().saturating_sub(fitted).max(1);
     let noise = (best.cost / freedom as f64).max(settings.least_noise * settings.least_noise);
@@ -308,6 +300,36 @@ mod tests {
             }
         }
         counts.map(|count| count as f64 / FITS as f64)
+    }
+
+    #[test]
+    fn what_is_held_leaves_an_interval_as_if_it_were_no_number() {
+        let measured = [3.1, 2.0, 1.9, 1.2, 0.9];
+        let residuals = |a: f64, b: f64, count: usize| {
+            let rows = measured.iter().enumerate().map(move |(k, y)| (0.5 * k as f64, y));
+            rows.map(|(t, y)| (a * (-b * t).exp() - y, a * (-b * t).exp(), t)).take(count).collect::<Vec<_>>()
+        };
+        let alone = |&[a]: &[f64; 1]| {
+            let mut out = Residuals::default();
+            residuals(a, 0.7, 5).into_iter().for_each(|(r, by_a, _)| out.push(r, [by_a]));
+            Some(out)
+        };
+        let beside = |&[a, b, _]: &[f64; 3]| {
+            let mut out = Residuals::default();
+            residuals(a, b, 5).into_iter().for_each(|(r, by_a, t)| out.push(r, [by_a, -b * t * by_a, 0.3 * t]));
+            Some(out)
+        };
+        let one = fit_positive(alone, &[[2.0]], &settings()).unwrap();
+        let held = LeastSquaresSettings { bounds: [[1e-6, 1e6], [0.7; 2], [1.0; 2]], ..settings() };
+        let three = fit_positive(beside, &[[2.0, 0.7, 1.0]], &held).unwrap();
+        assert!((three.parameters[0] / one.parameters[0] - 1.0).abs() < 1e-9);
+        assert!(
+            (three.uncertainty[0] / one.uncertainty[0] - 1.0).abs() < 1e-9,
+            "{:?} {:?}",
+            three.uncertainty,
+            one.uncertainty
+        );
+        assert_eq!(three.uncertainty[1..], [1.0, 1.0]);
     }
 
     #[test]

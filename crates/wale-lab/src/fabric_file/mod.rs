@@ -155,12 +155,18 @@ impl FabricFile {
         resolve::fabric(path, &TextFile::read(path, "fabric file")?)
     }
 
+    /// Angles from the weft \[rad\] of weft, bias and warp, as far as no stretch test was made along them.
+    pub fn unstretched(&self) -> impl Iterator<Item = f64> {
+        let untested = |degrees: &f64| !self.stretch.iter().any(|test| is_along(test.direction, *degrees));
+        DIRECTIONS.into_iter().map(|(_, degrees)| degrees).filter(untested).map(f64::to_radians)
+    }
+
     /// What the tests leave open, in words: directions that none was made in, and curves without compression.
     #[must_use]
     pub fn gaps(&self) -> Vec<String> {
         let mut gaps = Vec::new();
         for (name, degrees) in DIRECTIONS {
-            let near = |direction: f64| (direction.to_degrees() - degrees).abs() < 1.0;
+            let near = |direction: f64| is_along(direction, degrees);
             let of: Vec<_> = self.stretch.iter().filter(|test| near(test.direction)).collect();
             if of.is_empty() {
                 gaps.push(format!("no stretch test along the {name}"));
@@ -174,6 +180,11 @@ impl FabricFile {
         }
         gaps
     }
+}
+
+/// Whether a direction \[rad\] is one of so many degrees: tests are cut by hand.
+fn is_along(direction: f64, degrees: f64) -> bool {
+    (direction.to_degrees() - degrees).abs() < 1.0
 }
 
 /// Directions with a name, and their angle from the weft \[°\].
