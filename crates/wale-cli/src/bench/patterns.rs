@@ -16,7 +16,9 @@ pub struct Compared {
     pub pattern: String,
     /// Stitches that are worked, of all kinds.
     pub stitches: usize,
-    /// Part of them that are neither knits nor purls.
+    /// Loops: a stitch that is an increase makes several, a decrease takes several.
+    pub loops: usize,
+    /// Part of the stitches that are neither knits nor purls.
     pub special_part: f64,
     /// Nodes.
     pub nodes: usize,
@@ -30,6 +32,8 @@ pub struct Compared {
     pub linear_iterations: f64,
     /// Wall time of a step for a stitch, over that of the first pattern.
     pub stitch_cost: f64,
+    /// Wall time of a step for a loop, over that of the first pattern.
+    pub loop_cost: f64,
     /// Wall time for a stitch of a step as hard as the first pattern's: the median, over the steps, of the time for an iteration
     /// of Newton's method, over that of the first pattern.
     pub iteration_cost: f64,
@@ -60,12 +64,14 @@ pub fn compare(patterns: &[&str], nodes: u32, steps: usize) -> Result<Vec<Compar
         let step_s = median(times.iter().map(|(time, _)| *time));
         let iteration_s = median(times.iter().map(|(time, [newton, _])| time / (*newton).max(1) as f64));
         let mean = |which: usize| times.iter().map(|(_, count)| count[which]).sum::<usize>() as f64 / steps as f64;
+        let loops = swatch.loops();
         let a_stitch = [step_s, iteration_s].map(|time| time / stitches as f64);
         let special_part = special as f64 / stitches as f64;
         // The first pattern's are kept as they are until all are there.
         compared.push(Compared {
             pattern: (*pattern).to_owned(),
             stitches,
+            loops,
             special_part,
             nodes: swatch.nodes(),
             step_s,
@@ -73,14 +79,17 @@ pub fn compare(patterns: &[&str], nodes: u32, steps: usize) -> Result<Vec<Compar
             newton_iterations: mean(0),
             linear_iterations: mean(1),
             stitch_cost: a_stitch[0],
+            loop_cost: step_s / loops as f64,
             iteration_cost: a_stitch[1],
             special_cost: None,
         });
     }
-    let first = compared.first().map_or([1.0; 2], |first| [first.stitch_cost, first.iteration_cost]);
+    let costs = |of: &Compared| [of.stitch_cost, of.loop_cost, of.iteration_cost];
+    let first = compared.first().map_or([1.0; 3], costs);
     for pattern in &mut compared {
         pattern.stitch_cost /= first[0];
-        pattern.iteration_cost /= first[1];
+        pattern.loop_cost /= first[1];
+        pattern.iteration_cost /= first[2];
         let part = pattern.special_part;
         pattern.special_cost = (part > 0.0).then(|| (pattern.stitch_cost - (1.0 - part)) / part);
     }
@@ -112,7 +121,9 @@ mod tests {
     fn swatches_side_by_side_have_the_same_number_of_stitches() {
         let compared = compare(&["stockinette", "mesh"], 1600, 2).unwrap_or_else(|failure| panic!("{failure:?}"));
         assert_eq!(compared[0].stitches, compared[1].stitches);
-        assert_eq!((compared[0].stitch_cost, compared[0].special_cost), (1.0, None));
+        assert_eq!((compared[0].stitch_cost, compared[0].loop_cost, compared[0].special_cost), (1.0, 1.0, None));
+        // The loops of a cast-on have no stitch.
+        assert!(compared.iter().all(|pattern| pattern.loops > pattern.stitches));
         assert_eq!(compared[1].special_part, 0.5);
         assert!(compared[1].special_cost.is_some_and(f64::is_finite));
     }

@@ -114,6 +114,11 @@ impl Falling {
         self.simulation.network().node_count()
     }
 
+    /// Loops, those of the cast-on too.
+    pub fn loops(&self) -> usize {
+        self.simulation.network().loops.len()
+    }
+
     /// The stitches that are worked: all, and those of them that are no knits and no purls.
     pub fn stitches(&self) -> [usize; 2] {
         let rows = self.scene.structure.chart().map_or(&[][..], Chart::rows);

@@ -88,25 +88,27 @@ fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
         return output::json(&json!({ "threads": threads, "patterns": list }));
     }
     say!(
-        "swatches falling on spheres, a step of 1 ms of each in turn, on {threads} threads; a stitch against one of {}:",
+        "swatches falling on spheres, a step of 1 ms of each in turn, on {threads} threads; a stitch and a loop against one of {}:",
         PATTERNS[0]
     )?;
     say!(
-        "                       stitches    nodes  node·steps/s  Newton  linear  a step for      of them   one of    an iteration  layout of"
+        "                       stitches    loops    nodes  node·steps/s  Newton  linear  a step for  a step for      of them   one of    an iteration  layout of"
     )?;
     say!(
-        "  pattern                                                               a stitch   yo, dec, …  these costs   for a stitch  100,000 loops"
+        "  pattern                                                                        a stitch    a loop      yo, dec, …  these costs   for a stitch  100,000 loops"
     )?;
     for (swatch, (seconds, loops)) in compared.iter().zip(&laid_out) {
         say!(
-            "  {:<20} {:>8} {:>8} {:>13} {:>7.1} {:>7.1} {:>11.2} {:>10.0} % {:>12} {:>14.2} {:>14}",
+            "  {:<20} {:>8} {:>8} {:>8} {:>13} {:>7.1} {:>7.1} {:>11.2} {:>11.2} {:>10.0} % {:>12} {:>14.2} {:>14}",
             swatch.pattern,
             grouped(swatch.stitches as u64),
+            grouped(swatch.loops as u64),
             grouped(swatch.nodes as u64),
             grouped(swatch.node_steps_per_s as u64),
             swatch.newton_iterations,
             swatch.linear_iterations,
             swatch.stitch_cost,
+            swatch.loop_cost,
             100.0 * swatch.special_part,
             swatch.special_cost.map_or_else(|| "–".to_owned(), |cost| format!("{cost:.2}")),
             swatch.iteration_cost,
