@@ -136,7 +136,7 @@ pub fn fit_network(
             return Err(NetworkFitError::Bounds { what });
         }
     }
-    let tile = settings.tile.unwrap_or_else(|| TileSettings::of(&card));
+    let tile = settings.tile.unwrap_or_else(|| TileSettings { strand_contact: false, ..TileSettings::of(&card) });
     let problem =
         NetworkProblem::new(network, yarns, card, targets.to_vec(), tile, settings.pull, settings.relaxations)?;
     let at = |logarithms: &[f64; P]| -> [f64; P] { std::array::from_fn(|k| given[k] * logarithms[k].exp()) };

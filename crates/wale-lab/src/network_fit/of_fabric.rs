@@ -70,7 +70,7 @@ const STARTS_AT_REST: usize = 3;
 /// [`SceneFitError`]; [`SceneFitError::Pull`] if it does not come to rest.
 pub fn relaxed_reference(scene: &Scene) -> Result<TileReference, SceneFitError> {
     let (network, card) = (repeat_of(scene)?, &scene.fabric);
-    let settings = TileSettings::of(card);
+    let settings = TileSettings { strand_contact: false, ..TileSettings::of(card) };
     let rest = relax_from_starts(&network, &scene.yarns, card, &settings, STARTS_AT_REST).swap_remove(0);
     Ok(TileReference::new(&network, &scene.yarns, card, &settings, rest)?)
 }

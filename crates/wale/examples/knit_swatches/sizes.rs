@@ -32,6 +32,7 @@ impl Model {
             noise: 0.01,
             relief: 0.0,
             shorten: true,
+            strand_contact: true,
             seed: 1,
             max_iterations: 1500,
             tolerance: 1e-4,

@@ -196,10 +196,8 @@ impl Linear {
             .without_blocks_from(system.coordinates.node_count());
         // A domain or two of a fabric nearly always need a shift; found by trial it costs a factor more. The next shift is sixteen times
         // as large: one that only just does leaves a factor that is nearly singular, and lace took twice the iterations with it.
-        let incomplete = IncompleteCholeskySettings {
-            shifts: vec![4e-3, 6.4e-2, 1.0],
-            ..IncompleteCholeskySettings::default()
-        };
+        let incomplete =
+            IncompleteCholeskySettings { shifts: vec![4e-3, 6.4e-2, 1.0], ..IncompleteCholeskySettings::default() };
         Ok(Self::ConjugateGradient(Box::new(Iterative {
             matrix: BlockMatrix::zeros(pattern.clone()),
             rounded: vec![[0.0; 8]; pattern.rows()],

@@ -86,7 +86,7 @@ impl System {
 }
 
 /// When two pieces that move straight first meet, from 0 to 1.
-fn first_meeting(ends: &[[f64; 3]; 4], way: &[f64; 12]) -> Option<f64> {
+pub(super) fn first_meeting(ends: &[[f64; 3]; 4], way: &[f64; 12]) -> Option<f64> {
     let ends = ends.map(DVec3::from_array);
     let ways: [DVec3; 4] = std::array::from_fn(|k| DVec3::from_slice(&way[3 * k..]));
     let at = |t: f64| -> [DVec3; 4] { std::array::from_fn(|k| ends[k] + t * ways[k]) };

@@ -13,7 +13,10 @@ pub(super) struct Descent<'a> {
     force: f64,
     length: f64,
     settings: TileSettings,
-    trust: Trust,
+    pub trust: Trust,
+    /// How far coordinates have moved at most, and may move before it stops \[m\].
+    moved: f64,
+    pub leash: f64,
     pub energy: f64,
     pub iterations: usize,
     pub residual: f64,
@@ -47,24 +50,31 @@ impl<'a> Descent<'a> {
             length,
             settings,
             trust,
+            moved: 0.0,
+            leash: f64::INFINITY,
             energy: f64::NAN,
             iterations: 0,
             residual: f64::INFINITY,
         }
     }
 
-    /// Goes on until the tile is at rest, no step lowers the energy, or there were too many.
-    pub fn run(&mut self) {
+    /// Goes on until the tile is at rest, no step lowers the energy, there were too many, or it is at the end of its leash; whether
+    /// that was it.
+    pub fn run(&mut self) -> bool {
         while self.iterations <= self.settings.max_iterations {
             self.linearise();
             if self.residual <= self.settings.tolerance || self.iterations == self.settings.max_iterations {
-                break;
+                return false;
             }
             if !self.advance() {
-                break;
+                return false;
             }
             self.iterations += 1;
+            if self.moved > self.leash {
+                return true;
+            }
         }
+        false
     }
 
     fn linearise(&mut self) {
@@ -105,6 +115,7 @@ impl<'a> Descent<'a> {
             }
             self.trust.judge(share, part, 0.0);
             if is_enough(share) {
+                self.moved += part * step.direction.iter().fold(0.0f64, |m, d| m.max(d.abs()));
                 self.unknowns = trial;
                 return true;
             }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use wale_numerics::trust::Trust;
 
+use super::tile_contacts::TileContacts;
 use super::tile_descent::{Descent, FIRST_SHIFT, RULE};
 use super::tile_stiffness::bending_and_length;
 use super::tile_system::TileSystem;
@@ -24,6 +25,9 @@ pub struct TileSettings {
     /// Whether a step that goes too far is shortened before the second derivatives are shifted: large repeats need half the iterations
     /// so, and small ones with several equilibria may find another.
     pub shorten: bool,
+    /// Whether segments of thick yarns that share no contact hold each other off where loops are worked together, as in lace. Stretched
+    /// tiles and slopes of sizes know nothing of it.
+    pub strand_contact: bool,
     /// Seed of that displacement.
     pub seed: u64,
     /// Most Newton iterations.
@@ -42,7 +46,7 @@ impl TileSettings {
             FabricCard::Knit(_) => (Self::POINT_BED, Self::NOISE),
             FabricCard::Woven(_) => (0.0, 0.0),
         };
-        Self { bed, noise, ..Self::default() }
+        Self { bed, noise, strand_contact: true, ..Self::default() }
     }
 
     /// Bed of fabrics whose yarns meet in one point, and of those whose yarns lie beside each other.
@@ -58,6 +62,7 @@ impl Default for TileSettings {
             noise: Self::NOISE,
             relief: 0.0,
             shorten: false,
+            strand_contact: false,
             seed: 1,
             max_iterations: 300,
             tolerance: 1e-7,
@@ -117,8 +122,11 @@ pub fn relax_from_starts(
     starts: usize,
 ) -> Vec<TileEquilibrium> {
     let (yarns, card) = (yarns.into(), &card.into());
+    // What is disturbed more than yarns are thick has passed through itself.
+    let held_off = settings.strand_contact && TileContacts::of(network, card).is_some();
     let run = |start: usize| {
         let (more, relief) = DISTURBED[start % DISTURBED.len()];
+        let more = if held_off { 1.0 } else { more };
         let (seed, noise) = (settings.seed + start as u64, settings.noise * more);
         relax_tile(network, &yarns, card, &TileSettings { seed, noise, relief, ..*settings })
     };
@@ -145,12 +153,31 @@ pub fn relax_tile_from(
     let force = bending / (length * length);
     let mut system = TileSystem::of(network, &yarns, &card, settings);
     assert_eq!(start.len(), system.coordinates.unknown_len());
-    let unknowns = system.coordinates.unknowns(start);
-    let trust = Trust::new(RULE, FIRST_SHIFT, 1.0);
-    let mut descent = Descent::new(&mut system, unknowns, force, length, *settings, trust);
-    descent.run();
-    let Descent { unknowns, energy, iterations, residual, .. } = descent;
     let n = system.coordinates.own().len();
+    let mut unknowns = system.coordinates.unknowns(start);
+    let mut trust = Trust::new(RULE, FIRST_SHIFT, 1.0);
+    let contacts = settings.strand_contact.then(|| TileContacts::of(network, &card)).flatten();
+    let (mut iterations, mut world) = (0, Vec::new());
+    let (energy, residual) = loop {
+        let mut leash = f64::INFINITY;
+        if let Some(contacts) = &contacts {
+            system.coordinates.place(&unknowns, &mut world);
+            let near = contacts.near(&world, [unknowns[n], unknowns[n + 1]]);
+            system = TileSystem::touching(network, &yarns, &card, settings, |map| contacts.elements(&near, map));
+            leash = contacts.leash();
+        }
+        let left = TileSettings { max_iterations: settings.max_iterations - iterations, ..*settings };
+        let mut descent = Descent::new(&mut system, unknowns, force, length, left, trust);
+        descent.leash = leash;
+        let goes_on = descent.run();
+        iterations += descent.iterations;
+        trust = descent.trust;
+        let at = (descent.energy, descent.residual);
+        unknowns = descent.unknowns;
+        if !goes_on {
+            break at;
+        }
+    };
     let mut coordinates = Vec::new();
     system.coordinates.place(&unknowns, &mut coordinates);
     coordinates.truncate(n);

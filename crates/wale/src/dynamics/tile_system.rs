@@ -8,6 +8,8 @@ use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
+use super::strands::first_meeting;
+use super::tile_contacts::Contacts;
 use super::tile_equilibrium::TileSettings;
 use super::tile_stiffness::bending_and_length;
 use crate::energy::Foundation;
@@ -18,6 +20,8 @@ use crate::model::{FabricCard, Network, PassId, YarnId, Yarns};
 
 /// Values of a block.
 const BLOCK_VALUES: usize = BLOCK * BLOCK;
+/// Part of the way to where two segments would meet that a step may go.
+const CLEAR: f64 = 0.7;
 
 /// A tile's elements over its unknowns: own slots, then the two numbers of its plane, the periods where it relaxes.
 #[derive(Debug)]
@@ -25,6 +29,7 @@ pub(super) struct TileSystem {
     pub coordinates: TileCoordinates,
     mechanics: Mechanics,
     bed: Elements<Foundation, 1>,
+    contacts: Contacts,
     /// Which own slots are unknowns; the others are held.
     free: Vec<bool>,
     second: Bordered,
@@ -48,10 +53,26 @@ impl TileSystem {
     /// # Panics
     /// If the tile is too large for memory.
     pub fn of(network: &Network, yarns: &Yarns, card: &FabricCard, settings: &TileSettings) -> Self {
+        Self::touching(network, yarns, card, settings, |_| Contacts::default())
+    }
+
+    /// The same with contacts of segments, made over its coordinates.
+    ///
+    /// # Panics
+    /// If the tile is too large for memory.
+    pub fn touching(
+        network: &Network,
+        yarns: &Yarns,
+        card: &FabricCard,
+        settings: &TileSettings,
+        contacts: impl FnOnce(&mut TileCoordinates) -> Contacts,
+    ) -> Self {
         let (bending, length) = bending_and_length(network, yarns, card);
         let bed = settings.bed * (bending / length.powi(3));
         let held = [card.woven().is_some(); 2];
-        Self::with(network, yarns, card, bed, TileCoordinates::new(network), held).expect("a tile fits in memory")
+        let mut coordinates = TileCoordinates::new(network);
+        let contacts = contacts(&mut coordinates);
+        Self::with(network, yarns, card, bed, coordinates, held, contacts).expect("a tile fits in memory")
     }
 
     /// Over given coordinates, of which numbers of the plane may be held; `bed` \[N/m\] is the stiffness under every node.
@@ -65,6 +86,7 @@ impl TileSystem {
         bed: f64,
         mut coordinates: TileCoordinates,
         held: [bool; 2],
+        contacts: Contacts,
     ) -> Result<Self, CholeskyError> {
         let mechanics = Mechanics::new(network, yarns, card, &mut coordinates);
         let springs = self::bed(network, bed);
@@ -83,7 +105,7 @@ impl TileSystem {
         }
         let own = |dof: Dof| coordinates.source(dof).of as usize;
         let mut pairs = Vec::new();
-        for_each_stencil(&sets(&mechanics, &springs), |stencil| {
+        for_each_stencil(&sets(&mechanics, &springs, &contacts), |stencil| {
             let mut blocks: Vec<u32> = stencil.iter().map(|&dof| (own(dof) / BLOCK) as u32).collect();
             blocks.sort_unstable();
             blocks.dedup();
@@ -91,7 +113,7 @@ impl TileSystem {
         });
         let pattern = Arc::new(BlockPattern::from_pairs(coordinates.own().block_count(), pairs));
         let mut places = Vec::new();
-        for_each_stencil(&sets(&mechanics, &springs), |stencil| {
+        for_each_stencil(&sets(&mechanics, &springs, &contacts), |stencil| {
             for &b in stencil {
                 for &a in stencil {
                     let (a, b) = (own(a), own(b));
@@ -112,6 +134,7 @@ impl TileSystem {
             coordinates,
             mechanics,
             bed: springs,
+            contacts,
             free,
             second,
             places,
@@ -122,7 +145,7 @@ impl TileSystem {
     pub fn energy(&mut self, unknowns: &[f64]) -> f64 {
         let mut world = std::mem::take(&mut self.world);
         self.coordinates.place(unknowns, &mut world);
-        let energy = sets(&self.mechanics, &self.bed).iter().map(|set| set.total(&world)).sum();
+        let energy = sets(&self.mechanics, &self.bed, &self.contacts).iter().map(|set| set.total(&world)).sum();
         self.world = world;
         energy
     }
@@ -134,11 +157,13 @@ impl TileSystem {
         self.gradient.fill(0.0);
         self.period_gradient = [0.0; 2];
         self.second.clear();
-        let Self { coordinates, mechanics, bed, free, second, places, gradient, period_gradient, world, .. } = self;
+        let Self {
+            coordinates, mechanics, bed, contacts, free, second, places, gradient, period_gradient, world, ..
+        } = self;
         let mut places = places.iter();
         let mut energy = 0.0;
         let mut columns: Vec<[f64; 2]> = Vec::new();
-        for set in sets(mechanics, bed) {
+        for set in sets(mechanics, bed, contacts) {
             energy += set.visit(world, convexity, &mut |stencil, slope, curvature| {
                 columns.clear();
                 for (j, &dof) in stencil.iter().enumerate() {
@@ -250,7 +275,7 @@ impl TileSystem {
     pub fn first_along(&mut self, unknowns: &[f64], motion: &[f64]) -> f64 {
         self.coordinates.place(unknowns, &mut self.world);
         let mut sum = 0.0;
-        for set in sets(&self.mechanics, &self.bed) {
+        for set in sets(&self.mechanics, &self.bed, &self.contacts) {
             set.visit_gradient(&self.world, &mut |stencil, gradient| {
                 sum += stencil.iter().zip(gradient).map(|(&dof, g)| g * motion[dof as usize]).sum::<f64>();
             });
@@ -262,7 +287,7 @@ impl TileSystem {
     pub fn second_along(&mut self, unknowns: &[f64], one: &[f64], other: &[f64]) -> f64 {
         self.coordinates.place(unknowns, &mut self.world);
         let mut sum = 0.0;
-        for set in sets(&self.mechanics, &self.bed) {
+        for set in sets(&self.mechanics, &self.bed, &self.contacts) {
             set.visit(&self.world, 0.0, &mut |stencil, _, curvature| {
                 for (j, &b) in stencil.iter().enumerate() {
                     let column: f64 = stencil.iter().enumerate().map(|(i, &a)| one[a as usize] * curvature(i, j)).sum();
@@ -297,7 +322,29 @@ impl TileSystem {
             }
         }
         let largest = direction[..n].iter().fold(0.0f64, |m, d| m.max(d.abs()));
-        longest.min(most / largest.max(f64::MIN_POSITIVE))
+        let longest = longest.min(most / largest.max(f64::MIN_POSITIVE));
+        self.clear_way(unknowns, direction, longest)
+    }
+
+    /// The part of a step along which no two segments that may touch pass through each other, at most `part`.
+    fn clear_way(&mut self, unknowns: &[f64], direction: &[f64], part: f64) -> f64 {
+        if self.contacts.is_empty() {
+            return part;
+        }
+        let trial: Vec<f64> = unknowns.iter().zip(direction).map(|(u, d)| u + part * d).collect();
+        let (mut start, mut end) = (Vec::new(), Vec::new());
+        self.coordinates.place(unknowns, &mut start);
+        self.coordinates.place(&trial, &mut end);
+        let points = |index: usize, world: &[f64]| -> [[f64; 3]; 4] {
+            let points: [f64; 16] = self.contacts.elements[index].points(&self.contacts.local(index, world));
+            std::array::from_fn(|i| std::array::from_fn(|k| points[4 * i + k]))
+        };
+        let way = |index: usize| {
+            let (from, to) = (points(index, &start), points(index, &end));
+            let way = std::array::from_fn(|i| to[i / 3][i % 3] - from[i / 3][i % 3]);
+            first_meeting(&from, &way).map_or(1.0, |t| CLEAR * t)
+        };
+        part * (0..self.contacts.len()).map(way).fold(1.0, f64::min)
     }
 }
 
@@ -318,9 +365,13 @@ pub(super) fn bed(network: &Network, stiffness: f64) -> Elements<Foundation, 1> 
     springs
 }
 
-fn sets<'a>(mechanics: &'a Mechanics, bed: &'a Elements<Foundation, 1>) -> [&'a dyn ElementSet; 11] {
+fn sets<'a>(
+    mechanics: &'a Mechanics,
+    bed: &'a Elements<Foundation, 1>,
+    contacts: &'a Contacts,
+) -> [&'a dyn ElementSet; 12] {
     let [a, b, c, d, e, f, g, h, i, j] = mechanics.sets();
-    [a, b, c, d, e, f, g, h, i, j, bed]
+    [a, b, c, d, e, f, g, h, i, j, bed, contacts]
 }
 
 fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {
@@ -330,46 +381,4 @@ fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fabric::PlaneMap;
-    use crate::pattern::weave::{self, Draft};
-    use crate::scene::Scene;
-
-    #[test]
-    fn threads_that_are_sheared_would_gather_in_groups_if_nothing_rubbed() {
-        let text = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
-            bending_stiffness = 1e-9\n[fabric.weave]\npattern = \"plain\"\nends = 2\npicks = 2\nend_spacing = \"0.5 mm\"\n\
-            pick_spacing = \"0.5 mm\"\n";
-        let scene = Scene::from_text(text, "scene.toml").unwrap();
-        let (pitch, period) = (0.5e-3, 1e-3);
-        let network = weave::tile(&Draft::plain(), [pitch; 2]).unwrap();
-        // Sheared by 0.4 rad, its threads as long as they were: columns are periods.
-        let shear = 0.4f64;
-        let map =
-            PlaneMap { base: [[period, period * shear.sin()], [0.0, period * shear.cos()]], rates: [[[0.0; 2]; 2]; 2] };
-        let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / period, x.y / period]).collect();
-        let coordinates = TileCoordinates::with_plane(&network, &places, &map);
-        let mut system = TileSystem::with(&network, &scene.yarns, &scene.fabric, 0.0, coordinates, [true; 2]).unwrap();
-        let own = system.coordinates.own().clone();
-        // The second pick goes along the warp, which slides through it, and to its side.
-        let mut energy = |along: f64, aside: f64| {
-            let mut unknowns = vec![0.0; own.len() + 2];
-            for pass in 0..network.pass_count() {
-                unknowns[own.slot(PassId::new(pass))] = network.arc_length[pass];
-            }
-            for crossing in network.crossings.iter().filter(|crossing| crossing.node.index() >= 2) {
-                let place = BLOCK * crossing.node.index();
-                unknowns[place] = pitch * (along * shear.sin() - aside * shear.cos());
-                unknowns[place + 1] = pitch * (along * shear.cos() + aside * shear.sin());
-                unknowns[own.slot(crossing.warp)] += pitch * along;
-            }
-            system.energy(&unknowns)
-        };
-        let even = energy(0.0, 0.0);
-        assert!(even > 0.0 && (energy(0.3, 0.0) / even - 1.0).abs() < 1e-9, "a straight thread lies anywhere");
-        assert!(energy(0.0, 0.04) > even && energy(0.0, -0.04) > even);
-        let grouped = [-0.04, 0.04].map(|aside| energy(0.3, aside) / even - 1.0);
-        assert!(grouped.iter().any(|&change| change < -0.01), "{grouped:?}");
-    }
-}
+mod tests;

@@ -19,21 +19,17 @@ pub struct LegContact {
     pub distance: f64,
 }
 
-impl LegContact {
-    /// Energy and its first two derivatives by the distance.
-    fn profile(&self, distance: f64) -> [f64; 3] {
-        let s = distance / self.distance;
-        if s >= 1.0 {
-            return [0.0; 3];
-        }
-        let (m, ln) = (s - 1.0, s.ln());
-        [
-            -self.stiffness * self.distance * m * m * ln,
-            -self.stiffness * (2.0 * m * ln + m * m / s),
-            -self.stiffness / self.distance * (2.0 * ln + 4.0 * m / s - (m / s) * (m / s)),
-        ]
+/// Energy of a contact of stiffness `k` \[N\] that begins at a distance `d` \[m\], and its first two derivatives by the distance.
+pub(super) fn profile(k: f64, d: f64, distance: f64) -> [f64; 3] {
+    let s = distance / d;
+    if s.is_nan() || s >= 1.0 {
+        return [0.0; 3];
     }
+    let (m, ln) = (s - 1.0, s.ln());
+    [-k * d * m * m * ln, -k * (2.0 * m * ln + m * m / s), -k / d * (2.0 * ln + 4.0 * m / s - (m / s) * (m / s))]
+}
 
+impl LegContact {
     /// From the middle of the second leg to that of the first.
     fn apart<T: Real>(q: &[T; 16]) -> [T; 3] {
         sub(add(point(q, 0), point(q, 4)), add(point(q, 8), point(q, 12))).map(|x| x.scale(0.5))
@@ -61,7 +57,7 @@ impl Element<16> for LegContact {
     fn add_blended(&self, q: &[f64; 16], convexity: f64, sum: &mut Local<16>) {
         let d = Self::apart(q);
         let distance = dot(d, d).sqrt();
-        let [energy, slope, second] = self.profile(distance);
+        let [energy, slope, second] = profile(self.stiffness, self.distance, distance);
         if energy == 0.0 {
             return;
         }

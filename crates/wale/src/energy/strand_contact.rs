@@ -40,7 +40,7 @@ pub struct Closest {
 const PARALLEL: f64 = 1e-9;
 
 /// Places along two pieces, from 0 to 1, where they are closest.
-fn places(p: &[[f64; 3]; 4]) -> [f64; 2] {
+pub(super) fn places(p: &[[f64; 3]; 4]) -> [f64; 2] {
     let (d, e, r) = (sub(p[1], p[0]), sub(p[3], p[2]), sub(p[2], p[0]));
     let (dd, ee, de, dr, er) = (dot(d, d), dot(e, e), dot(d, e), dot(d, r), dot(e, r));
     let determinant = dd * ee - de * de;
@@ -66,7 +66,7 @@ pub fn closest(p: &[[f64; 3]; 4]) -> Closest {
 }
 
 /// Distance of two points, of a point and the line through two, or of two lines, whichever the places say.
-fn distance<T: Real>(p: &[[T; 3]; 4], [s, t]: [f64; 2]) -> T {
+pub(super) fn distance<T: Real>(p: &[[T; 3]; 4], [s, t]: [f64; 2]) -> T {
     let inside = |x: f64| x > 0.0 && x < 1.0;
     let end = |x: f64, first: usize| p[first + usize::from(x >= 1.0)];
     let to_line = |from: [T; 3], first: usize| {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::coordinates::{CoordinateMap, Dof};
+use crate::energy::thick::normal;
 use crate::model::{ContactPair, Network, NodeId, PassId};
 
 /// A node next to another, in some periodic image.
@@ -68,6 +69,20 @@ impl Sides {
     #[must_use]
     pub fn around(&self, node: usize) -> Option<[usize; 3]> {
         self.around[node].map(|corners| corners.map(|(node, _)| node.index()))
+    }
+
+    /// Where a pass of some periodic image lies \[m\], if nodes are where `at` says.
+    pub fn place(
+        &self,
+        network: &Network,
+        (pass, image): (PassId, [i16; 2]),
+        at: impl Fn(NodeId, [i16; 2]) -> DVec3,
+    ) -> DVec3 {
+        let node = network.pass_node[pass.index()];
+        let x = at(node, image);
+        let Some(corners) = self.around[node.index()] else { return x };
+        let [a, b, c] = corners.map(|(node, off)| at(node, [image[0] + off[0], image[1] + off[1]]).to_array());
+        x + DVec3::from_array(normal(a, b, c, self.softness())) * self.offset(network, pass)
     }
 
     /// Coordinates `x a b c u` of a pass, as [`crate::energy::Thick`] reads them.

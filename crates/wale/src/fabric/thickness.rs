@@ -12,7 +12,7 @@ const PASSES_OF_LOOP: i32 = 8;
 const FACING_LOOPS: i32 = 2;
 
 /// A pass of some periodic image.
-type Place = (PassId, [i16; 2], i16);
+pub(crate) type Place = (PassId, [i16; 2], i16);
 
 /// Elements of yarns with a thickness; none for yarns that meet in one point.
 #[derive(Clone, Debug, Default)]
@@ -126,11 +126,16 @@ fn place(neighbour: Neighbour) -> Place {
     (neighbour.pass, neighbour.image, neighbour.turns)
 }
 
-fn beside<E: Copy, const P: usize>(network: &Network, sides: &Sides, inner: E, places: [Place; P]) -> Thick<E, P> {
+pub(crate) fn beside<E: Copy, const P: usize>(
+    network: &Network,
+    sides: &Sides,
+    inner: E,
+    places: [Place; P],
+) -> Thick<E, P> {
     Thick { inner, offset: places.map(|(pass, ..)| sides.offset(network, pass)), softness: sides.softness() }
 }
 
-fn stencil<const P: usize, const N: usize>(
+pub(crate) fn stencil<const P: usize, const N: usize>(
     network: &Network,
     sides: &Sides,
     map: &mut dyn CoordinateMap,

@@ -6,6 +6,7 @@ use wale_numerics::trust::Trust;
 
 use super::direction::Direction;
 use super::reference::TileReference;
+use crate::dynamics::tile_contacts::Contacts;
 use crate::dynamics::tile_descent::{Descent, RULE};
 use crate::dynamics::tile_equilibrium::TileSettings;
 use crate::dynamics::tile_stiffness::UnitEnergies;
@@ -109,7 +110,7 @@ impl StretchedTile {
         let bed = settings.bed * force / unit_length;
         let units = reference.units(coordinates.clone());
         let held = [true, !free_compression];
-        let system = TileSystem::with(&reference.network, yarns, card, bed, coordinates, held)?;
+        let system = TileSystem::with(&reference.network, yarns, card, bed, coordinates, held, Contacts::default())?;
         let mut world = reference.rest().coordinates.clone();
         world.truncate(system.coordinates.own().len());
         world.extend([0.0; 2]);
