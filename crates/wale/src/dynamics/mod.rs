@@ -19,6 +19,7 @@ pub mod terms;
 mod tile_contacts;
 mod tile_descent;
 pub mod tile_equilibrium;
+mod tile_places;
 pub mod tile_sensitivity;
 pub mod tile_stiffness;
 mod tile_system;

@@ -33,6 +33,9 @@ pub(super) struct NearSegments {
     distance: f64,
 }
 
+/// Two segments, and the image of the second.
+type Key = (usize, usize, [i16; 2]);
+
 /// A segment from the tile itself, and the contacts at its ends with their images.
 struct Segment {
     ends: [Place; 2],
@@ -156,7 +159,7 @@ impl<'a> TileContacts<'a> {
         i: usize,
         j: usize,
         image: [i16; 2],
-    ) -> Option<((usize, usize, [i16; 2]), NearSegments)> {
+    ) -> Option<(Key, NearSegments)> {
         let ends = |drawn: &[[DVec3; 2]], periods: [DVec3; 2]| {
             let shift = f64::from(image[0]) * periods[0] + f64::from(image[1]) * periods[1];
             [drawn[i][0], drawn[i][1], drawn[j][0] + shift, drawn[j][1] + shift]

@@ -1,9 +1,6 @@
 //! The energy of a periodic tile by its unknowns, and its second derivatives as a block-sparse matrix with the two numbers of
 //! its plane beside it.
 
-use std::sync::Arc;
-
-use wale_numerics::block_pattern::BlockPattern;
 use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
@@ -11,6 +8,7 @@ use wale_numerics::trust::Foreseen;
 use super::strands::first_meeting;
 use super::tile_contacts::Contacts;
 use super::tile_equilibrium::TileSettings;
+use super::tile_places::places_of;
 use super::tile_stiffness::bending_and_length;
 use crate::energy::Foundation;
 use crate::fabric::coordinates::{BLOCK, Dof, dof};
@@ -18,8 +16,6 @@ use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
 use crate::model::{FabricCard, Network, PassId, YarnId, Yarns};
 
-/// Values of a block.
-const BLOCK_VALUES: usize = BLOCK * BLOCK;
 /// Part of the way to where two segments would meet that a step may go.
 const CLEAR: f64 = 0.7;
 
@@ -104,24 +100,7 @@ impl TileSystem {
             free[coordinates.own().slot(pass)] = false;
         }
         let own = |dof: Dof| coordinates.source(dof).of as usize;
-        let mut pairs = Vec::new();
-        for_each_stencil(&sets(&mechanics, &springs, &contacts), |stencil| {
-            let mut blocks: Vec<u32> = stencil.iter().map(|&dof| (own(dof) / BLOCK) as u32).collect();
-            blocks.sort_unstable();
-            blocks.dedup();
-            pairs.extend(blocks.iter().flat_map(|&a| blocks.iter().map(move |&b| (a, b))));
-        });
-        let pattern = Arc::new(BlockPattern::from_pairs(coordinates.own().block_count(), pairs));
-        let mut places = Vec::new();
-        for_each_stencil(&sets(&mechanics, &springs, &contacts), |stencil| {
-            for &b in stencil {
-                for &a in stencil {
-                    let (a, b) = (own(a), own(b));
-                    let block = pattern.position(a / BLOCK, b / BLOCK).expect("what an element couples meets");
-                    places.push((BLOCK_VALUES * block + BLOCK * (b % BLOCK) + a % BLOCK) as u32);
-                }
-            }
-        });
+        let (pattern, places) = places_of(&sets(&mechanics, &springs, &contacts), coordinates.own().block_count(), own);
         let second = Bordered::new(pattern, &free)?;
         Ok(Self {
             gradient: vec![0.0; free.len()],
@@ -162,10 +141,12 @@ impl TileSystem {
         } = self;
         let mut places = places.iter();
         let mut energy = 0.0;
-        let mut columns: Vec<[f64; 2]> = Vec::new();
         for set in sets(mechanics, bed, contacts) {
             energy += set.visit(world, convexity, &mut |stencil, slope, curvature| {
-                columns.clear();
+                if slope.is_empty() {
+                    places = places.as_slice()[stencil.len() * stencil.len()..].iter();
+                    return;
+                }
                 for (j, &dof) in stencil.iter().enumerate() {
                     let to = coordinates.source(dof);
                     let mut column = [0.0; 2];
@@ -374,11 +355,49 @@ fn sets<'a>(
     [a, b, c, d, e, f, g, h, i, j, bed, contacts]
 }
 
-fn for_each_stencil(sets: &[&dyn ElementSet], mut visit: impl FnMut(&[Dof])) {
-    for set in sets {
-        set.stencils(&mut visit);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::PlaneMap;
+    use crate::pattern::weave::{self, Draft};
+    use crate::scene::Scene;
+
+    #[test]
+    fn threads_that_are_sheared_would_gather_in_groups_if_nothing_rubbed() {
+        let text = "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.16 mm\"\nstretch_stiffness = \"10 N\"\n\
+            bending_stiffness = 1e-9\n[fabric.weave]\npattern = \"plain\"\nends = 2\npicks = 2\nend_spacing = \"0.5 mm\"\n\
+            pick_spacing = \"0.5 mm\"\n";
+        let scene = Scene::from_text(text, "scene.toml").unwrap();
+        let (pitch, period) = (0.5e-3, 1e-3);
+        let network = weave::tile(&Draft::plain(), [pitch; 2]).unwrap();
+        // Sheared by 0.4 rad, its threads as long as they were: columns are periods.
+        let shear = 0.4f64;
+        let map =
+            PlaneMap { base: [[period, period * shear.sin()], [0.0, period * shear.cos()]], rates: [[[0.0; 2]; 2]; 2] };
+        let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / period, x.y / period]).collect();
+        let coordinates = TileCoordinates::with_plane(&network, &places, &map);
+        let mut system =
+            TileSystem::with(&network, &scene.yarns, &scene.fabric, 0.0, coordinates, [true; 2], Contacts::default())
+                .unwrap();
+        let own = system.coordinates.own().clone();
+        // The second pick goes along the warp, which slides through it, and to its side.
+        let mut energy = |along: f64, aside: f64| {
+            let mut unknowns = vec![0.0; own.len() + 2];
+            for pass in 0..network.pass_count() {
+                unknowns[own.slot(PassId::new(pass))] = network.arc_length[pass];
+            }
+            for crossing in network.crossings.iter().filter(|crossing| crossing.node.index() >= 2) {
+                let place = BLOCK * crossing.node.index();
+                unknowns[place] = pitch * (along * shear.sin() - aside * shear.cos());
+                unknowns[place + 1] = pitch * (along * shear.cos() + aside * shear.sin());
+                unknowns[own.slot(crossing.warp)] += pitch * along;
+            }
+            system.energy(&unknowns)
+        };
+        let even = energy(0.0, 0.0);
+        assert!(even > 0.0 && (energy(0.3, 0.0) / even - 1.0).abs() < 1e-9, "a straight thread lies anywhere");
+        assert!(energy(0.0, 0.04) > even && energy(0.0, -0.04) > even);
+        let grouped = [-0.04, 0.04].map(|aside| energy(0.3, aside) / even - 1.0);
+        assert!(grouped.iter().any(|&change| change < -0.01), "{grouped:?}");
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -191,6 +191,9 @@ macro_rules! of_passes {
                     self.add_turning(q, &inner.gradient, 1.0 - convexity, &mut sum.hessian);
                 }
             }
+            fn acts(&self, q: &[f64; $all]) -> bool {
+                self.inner.acts(&self.points(q))
+            }
             fn gradient(&self, q: &[f64; $all]) -> (f64, [f64; $all]) {
                 let (energy, gradient) = self.inner.gradient(&self.points(q));
                 (energy, self.gradient_of(&std::array::from_fn(|pass| self.moved(pass, q)), &gradient))

@@ -65,7 +65,8 @@ pub trait ElementSet {
     /// Calls `visit` with the stencil of every element, in order.
     fn stencils(&self, visit: &mut dyn FnMut(&[Dof]));
     /// Calls `visit(stencil, gradient, Hessian)` for every element, in order, and returns the energy \[J\]; the Hessian is
-    /// between the exact one (`convexity = 0`) and a positive semi-definite one (`convexity = 1`).
+    /// between the exact one (`convexity = 0`) and a positive semi-definite one (`convexity = 1`). Of an element that does not act the
+    /// gradient is empty and the Hessian zero.
     fn visit(&self, q: &[f64], convexity: f64, visit: &mut Visit<'_>) -> f64;
     /// Calls `visit(stencil, gradient)` for every element and returns the energy \[J\].
     fn visit_gradient(&self, q: &[f64], visit: &mut dyn FnMut(&[Dof], &[f64])) -> f64;
@@ -84,8 +85,13 @@ impl<E: Element<N>, const N: usize> ElementSet for Elements<E, N> {
     fn visit(&self, q: &[f64], convexity: f64, visit: &mut Visit<'_>) -> f64 {
         let mut energy = 0.0;
         for (index, element) in self.elements.iter().enumerate() {
+            let q = self.local(index, q);
+            if !element.acts(&q) {
+                visit(&self.stencils[index], &[], &|_, _| 0.0);
+                continue;
+            }
             let mut local = Local::zero();
-            element.add_blended(&self.local(index, q), convexity, &mut local);
+            element.add_blended(&q, convexity, &mut local);
             energy += local.energy;
             visit(&self.stencils[index], &local.gradient, &|i, j| local.hessian[i][j]);
         }
