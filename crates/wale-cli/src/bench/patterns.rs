@@ -122,8 +122,8 @@ mod tests {
         let compared = compare(&["stockinette", "mesh"], 1600, 2).unwrap_or_else(|failure| panic!("{failure:?}"));
         assert_eq!(compared[0].stitches, compared[1].stitches);
         assert_eq!((compared[0].stitch_cost, compared[0].loop_cost, compared[0].special_cost), (1.0, 1.0, None));
-        // The loops of a cast-on have no stitch.
-        assert!(compared.iter().all(|pattern| pattern.loops > pattern.stitches));
+        // Every stitch of these two makes one loop.
+        assert!(compared.iter().all(|pattern| pattern.loops == pattern.stitches), "{compared:?}");
         assert_eq!(compared[1].special_part, 0.5);
         assert!(compared[1].special_cost.is_some_and(f64::is_finite));
     }

@@ -114,7 +114,7 @@ impl Falling {
         self.simulation.network().node_count()
     }
 
-    /// Loops, those of the cast-on too.
+    /// Loops that stitches made.
     pub fn loops(&self) -> usize {
         self.simulation.network().loops.len()
     }
