@@ -10,7 +10,7 @@ use crate::energy::strand_contact::closest;
 use crate::model::{Network, NodeId, PassId, Yarns};
 
 /// Distance at which strands begin to push each other apart, as a share of that at which they touch.
-const BEGINS: f64 = 0.9;
+pub const BEGINS: f64 = 0.9;
 /// The same as a share of their distance in the layout, so that the layout is not pushed apart.
 const OF_LAYOUT: f64 = 0.8;
 /// Strands nearer than this share of touching in the layout lie through each other there: nothing tells them apart.
@@ -24,6 +24,13 @@ const PART: usize = 8192;
 const ASIDE: f64 = 0.7;
 /// Below this share of the flattest possible fit, a node's own normal gives way to its neighbours'.
 const TRUSTED: f64 = 0.05;
+
+/// Distance below which strands push each other apart that touch at one distance and lie at another in the layout \[m\]; `None` where
+/// nothing tells them apart.
+#[must_use]
+pub fn holds_off_below(touching: f64, layout: f64) -> Option<f64> {
+    (layout > NOTHING * touching).then_some((BEGINS * touching).min(OF_LAYOUT * layout))
+}
 
 /// Two strands that may meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,10 +92,7 @@ impl Strands {
         if network.stitches.is_empty() || network.periods.is_some() {
             return Self::default();
         }
-        let mut contact: Vec<u32> = (0..network.node_count() as u32).collect();
-        for stitch in &network.stitches {
-            contact[stitch.nodes[1].index()] = stitch.nodes[0].0;
-        }
+        let contact = network.contact_of_nodes();
         let yarn_of = network.pass_yarn();
         let radius = |pass: PassId| yarns.of(network.yarn_kind[yarn_of[pass.index()].index()]).radius;
         let mut heights = vec![0.0; network.pass_count()];
@@ -205,12 +209,8 @@ impl Strands {
             }
             let layout = [a.layout[0], a.layout[1], b.layout[0], b.layout[1]].map(|x| x.to_array());
             let layout = closest(&layout).distance;
-            let distance = (BEGINS * touching).min(OF_LAYOUT * layout);
-            (layout > NOTHING * touching).then_some(NearStrands {
-                nodes,
-                offsets: offsets.map(|x| x.to_array()),
-                distance,
-            })
+            let distance = holds_off_below(touching, layout)?;
+            Some(NearStrands { nodes, offsets: offsets.map(|x| x.to_array()), distance })
         };
         self.parts.resize_with(pairs.len().div_ceil(PART), Vec::new);
         self.parts.par_iter_mut().zip(pairs.par_chunks(PART)).for_each(|(part, pairs)| {

@@ -14,7 +14,7 @@ use crate::model::Network;
 /// Times the weight of the yarn at their nodes that strands carry about one yarn radius deep.
 const WEIGHTS: f64 = 3e3;
 /// Part of the way to where two strands would meet that a step may go.
-const PART: f64 = 0.7;
+pub(super) const PART: f64 = 0.7;
 /// Parts of a step that are looked at to find where two strands meet.
 const PARTS: usize = 8;
 

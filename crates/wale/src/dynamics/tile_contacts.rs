@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use crate::contact::strands::{BEGINS, holds_off_below};
 use crate::energy::Thick;
 use crate::energy::segment_contact::SegmentContact;
 use crate::energy::strand_contact::closest;
@@ -14,12 +15,6 @@ use crate::fabric::thickness::{Place, beside, stencil};
 use crate::fabric::{Elements, TileCoordinates};
 use crate::model::{FabricCard, Network, NodeId, PassId};
 
-/// Distance at which segments begin to push each other apart, as a share of that of two yarns at a contact.
-const BEGINS: f64 = 0.9;
-/// The same as a share of their distance in the layout, so that the layout is not pushed apart.
-const OF_LAYOUT: f64 = 0.8;
-/// Segments nearer than this share of touching in the layout lie through each other there: nothing tells them apart.
-const NOTHING: f64 = 0.02;
 /// How much further than they touch segments are looked for, in loop lengths.
 const MARGIN: f64 = 0.2;
 
@@ -51,6 +46,7 @@ pub(super) struct TileContacts<'a> {
     layout_periods: [DVec3; 2],
     touching: f64,
     stiffness: f64,
+    margin: f64,
     reach: f64,
 }
 
@@ -69,13 +65,10 @@ impl<'a> TileContacts<'a> {
         let card = card.knit()?;
         let thickness = card.thickness?;
         let periods = network.periods?;
-        if !has_stacks(network) || thickness.contact_distance <= 0.0 {
+        if !has_stacks(network) || thickness.contact_distance <= 0.0 || thickness.leg_stiffness <= 0.0 {
             return None;
         }
-        let mut contact: Vec<u32> = (0..network.node_count() as u32).collect();
-        for stitch in &network.stitches {
-            contact[stitch.nodes[1].index()] = stitch.nodes[0].0;
-        }
+        let contact = network.contact_of_nodes();
         let yarn_of = network.pass_yarn();
         let mut segments = Vec::new();
         for pass in (0..network.pass_count()).map(PassId::new) {
@@ -92,6 +85,7 @@ impl<'a> TileContacts<'a> {
             layout_periods: periods,
             touching: thickness.contact_distance,
             stiffness: thickness.leg_stiffness,
+            margin: MARGIN * card.loop_length,
             reach: BEGINS * thickness.contact_distance + MARGIN * card.loop_length,
         };
         contacts.layout = contacts.drawn(&network.position, periods);
@@ -100,7 +94,7 @@ impl<'a> TileContacts<'a> {
 
     /// How far coordinates may move before others than the segments that were near can meet \[m\].
     pub fn leash(&self) -> f64 {
-        0.25 * (self.reach - BEGINS * self.touching)
+        0.25 * self.margin
     }
 
     /// Where the ends of all segments lie.
@@ -178,11 +172,9 @@ impl<'a> TileContacts<'a> {
             return None;
         }
         let layout = closest(&ends(&self.layout, self.layout_periods).map(|x| x.to_array())).distance;
-        if layout <= NOTHING * self.touching {
-            return None;
-        }
+        let distance = holds_off_below(self.touching, layout)?;
         let ends = [one.ends[0], one.ends[1], shifted(other.ends[0], image), shifted(other.ends[1], image)];
-        Some(((i, j, image), NearSegments { ends, distance: (BEGINS * self.touching).min(OF_LAYOUT * layout) }))
+        Some(((i, j, image), NearSegments { ends, distance }))
     }
 
     /// The elements of segments that may meet.

@@ -5,7 +5,7 @@ use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
-use super::strands::first_meeting;
+use super::strands::{PART, first_meeting};
 use super::tile_contacts::Contacts;
 use super::tile_equilibrium::TileSettings;
 use super::tile_places::places_of;
@@ -15,9 +15,6 @@ use crate::fabric::coordinates::{BLOCK, Dof, dof};
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
 use crate::model::{FabricCard, Network, PassId, YarnId, Yarns};
-
-/// Part of the way to where two segments would meet that a step may go.
-const CLEAR: f64 = 0.7;
 
 /// A tile's elements over its unknowns: own slots, then the two numbers of its plane, the periods where it relaxes.
 #[derive(Debug)]
@@ -323,7 +320,7 @@ impl TileSystem {
         let way = |index: usize| {
             let (from, to) = (points(index, &start), points(index, &end));
             let way = std::array::from_fn(|i| to[i / 3][i % 3] - from[i / 3][i % 3]);
-            first_meeting(&from, &way).map_or(1.0, |t| CLEAR * t)
+            first_meeting(&from, &way).map_or(1.0, |t| PART * t)
         };
         part * (0..self.contacts.len()).map(way).fold(1.0, f64::min)
     }

@@ -29,6 +29,15 @@ pub(super) fn profile(k: f64, d: f64, distance: f64) -> [f64; 3] {
     [-k * d * m * m * ln, -k * (2.0 * m * ln + m * m / s), -k / d * (2.0 * ln + 4.0 * m / s - (m / s) * (m / s))]
 }
 
+/// That energy alone, over any scalar.
+pub(super) fn energy_at<T: Real>(k: f64, d: f64, distance: T) -> T {
+    let s = distance.scale(1.0 / d);
+    if s.value() >= 1.0 {
+        return T::constant(0.0);
+    }
+    (s.offset(-1.0).square() * s.ln()).scale(-k * d)
+}
+
 impl LegContact {
     /// From the middle of the second leg to that of the first.
     fn apart<T: Real>(q: &[T; 16]) -> [T; 3] {
@@ -41,11 +50,7 @@ impl Element<16> for LegContact {
 
     fn energy<T: Real>(&self, q: &[T; 16]) -> T {
         let d = Self::apart(q);
-        let s = dot(d, d).sqrt().scale(1.0 / self.distance);
-        if s.value() >= 1.0 {
-            return T::constant(0.0);
-        }
-        (s.offset(-1.0).square() * s.ln()).scale(-self.stiffness * self.distance)
+        energy_at(self.stiffness, self.distance, dot(d, d).sqrt())
     }
 
     fn convex(&self, q: &[f64; 16]) -> Local<16> {

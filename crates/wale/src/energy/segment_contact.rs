@@ -5,7 +5,7 @@ use wale_numerics::jet::Real;
 use wale_numerics::jet::vector3::dot;
 
 use super::element::{Element, point};
-use super::leg_contact::profile;
+use super::leg_contact::{energy_at, profile};
 use super::strand_contact::{closest, distance, places};
 
 /// Contact of two segments wherever they are closest:
@@ -38,11 +38,7 @@ impl Element<16> for SegmentContact {
     fn energy<T: Real>(&self, q: &[T; 16]) -> T {
         let ends = Self::ends(q);
         let at = places(&ends.map(|x| x.map(Real::value)));
-        let s = distance(&ends, at).scale(1.0 / self.distance);
-        if s.value() >= 1.0 {
-            return T::constant(0.0);
-        }
-        (s.offset(-1.0).square() * s.ln()).scale(-self.stiffness * self.distance)
+        energy_at(self.stiffness, self.distance, distance(&ends, at))
     }
 
     fn convex(&self, q: &[f64; 16]) -> Local<16> {
@@ -94,6 +90,7 @@ impl Element<16> for SegmentContact {
 #[cfg(test)]
 mod tests {
     use super::super::element::testing::{Random, check, check_blend};
+    use super::super::rigid_motion::check_rigid_motion;
     use super::*;
 
     #[test]
@@ -115,6 +112,38 @@ mod tests {
                 check_blend(&element, &q, 1e-9);
             }
         }
+    }
+
+    /// The element by positions alone.
+    #[derive(Clone, Copy)]
+    struct Positions(SegmentContact);
+
+    impl Positions {
+        fn with_sliding<T: Real>(q: &[T; 12]) -> [T; 16] {
+            std::array::from_fn(|i| if i % 4 < 3 { q[i / 4 * 3 + i % 4] } else { T::constant(0.7) })
+        }
+    }
+
+    impl Element<12> for Positions {
+        const NAME: &'static str = SegmentContact::NAME;
+        fn energy<T: Real>(&self, q: &[T; 12]) -> T {
+            self.0.energy(&Self::with_sliding(q))
+        }
+        fn convex(&self, q: &[f64; 12]) -> Local<12> {
+            let (full, at) = (self.0.convex(&Self::with_sliding(q)), |i: usize| i / 3 * 4 + i % 3);
+            let mut local = Local::zero();
+            local.energy = full.energy;
+            local.gradient = std::array::from_fn(|i| full.gradient[at(i)]);
+            local.hessian = std::array::from_fn(|i| std::array::from_fn(|j| full.hessian[at(i)][at(j)]));
+            local
+        }
+    }
+
+    #[test]
+    fn turning_and_moving_both_changes_nothing() {
+        let element = Positions(SegmentContact { stiffness: 3.0, distance: 2.0 });
+        check_rigid_motion(&element, &[-2.0, 0.0, 0.0, 2.0, 0.1, 0.0, 0.1, -2.0, 1.0, 0.0, 2.0, 1.1]);
+        check_rigid_motion(&element, &[-2.0, 0.0, 0.0, 2.0, 0.1, 0.0, 2.7, 0.7, 0.9, 4.0, 4.0, 1.1]);
     }
 
     #[test]

@@ -39,10 +39,7 @@ impl Passages {
     /// them apart.
     #[must_use]
     pub fn of(network: &Network) -> Self {
-        let mut of_node: Vec<u32> = (0..network.node_count() as u32).collect();
-        for stitch in &network.stitches {
-            of_node[stitch.nodes[1].index()] = stitch.nodes[0].0;
-        }
+        let of_node = network.contact_of_nodes();
         let node = |pass: usize| of_node[network.pass_node[pass].index()];
         let last = network.pass_count().saturating_sub(1);
         let contacts = (0..network.pass_count()).map(|pass| [node(pass), node((pass + 1).min(last))]).collect();

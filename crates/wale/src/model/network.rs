@@ -209,6 +209,15 @@ impl Network {
         let i = node.index();
         &self.stack_pass[self.stack_start[i] as usize..self.stack_start[i + 1] as usize]
     }
+    /// The stitch contact of each node, named by its first node; a node of none is one of its own.
+    #[must_use]
+    pub fn contact_of_nodes(&self) -> Vec<u32> {
+        let mut of_node: Vec<u32> = (0..self.node_count() as u32).collect();
+        for stitch in &self.stitches {
+            of_node[stitch.nodes[1].index()] = stitch.nodes[0].0;
+        }
+        of_node
+    }
     /// The yarn of each pass.
     #[must_use]
     pub fn pass_yarn(&self) -> Vec<YarnId> {
