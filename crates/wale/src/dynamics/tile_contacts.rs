@@ -195,6 +195,7 @@ impl<'a> TileContacts<'a> {
 mod tests {
     use super::*;
     use crate::dynamics::tile_equilibrium::{TileSettings, relax_tile};
+    use crate::dynamics::tile_system::TileSystem;
     use crate::pattern::knit;
     use crate::scene::Scene;
 
@@ -232,6 +233,53 @@ mod tests {
         assert!(with.len() > 100 && least(with.clone()) > 0.5, "{}", least(with));
         // Without, many lie in each other.
         assert!(without.iter().filter(|&&apart| apart < 0.3).count() > 10, "{:?}", least(without));
+    }
+
+    #[test]
+    fn a_step_stops_before_segments_pass_through_each_other() {
+        let text =
+            "schema = 1\n[fabric]\ncontacts = \"thick\"\n[fabric.chart]\npattern = \"mesh\"\ncolumns = 8\nrows = 8\n";
+        let scene = Scene::from_text(text, "mesh.toml").unwrap();
+        let (chart, card) = (scene.structure.chart().unwrap(), scene.fabric.knit().unwrap());
+        let tile = knit::tile(&chart.smallest_repeat(), card).unwrap();
+        let contacts = TileContacts::of(&tile, &scene.fabric).unwrap();
+        let (periods, world) = (tile.periods.unwrap(), TileCoordinates::new(&tile).initial(&tile));
+        let all = contacts.near(&world, [periods[0].x, periods[1].y]);
+        let node = |end: usize, near: &NearSegments| tile.pass_node[near.ends[end].0.index()];
+        let place = |end: usize, near: &NearSegments| {
+            let at = |node: NodeId, [a, b]: [i16; 2]| {
+                tile.position[node.index()] + f64::from(a) * periods[0] + f64::from(b) * periods[1]
+            };
+            contacts.sides.place(&tile, (near.ends[end].0, near.ends[end].1), at).to_array()
+        };
+        let part = |of: &[NearSegments], direction: &dyn Fn(&mut [f64])| {
+            let settings = TileSettings::of(&scene.fabric);
+            let elements = |map: &mut TileCoordinates| contacts.elements(of, map);
+            let mut system = TileSystem::touching(&tile, &scene.yarns, &scene.fabric, &settings, elements);
+            let unknowns = system.coordinates.unknowns(world.clone());
+            let mut step = vec![0.0; unknowns.len()];
+            direction(&mut step);
+            system.longest_step(&unknowns, &step, f64::INFINITY)
+        };
+        let (mut crossing, mut stopped) = (0, 0);
+        for near in &all {
+            // The first segment goes to where the second is, and as far beyond.
+            let found = closest(&std::array::from_fn(|end| place(end, near)));
+            // Only two that cross each other in the air meet wherever they go.
+            if found.weights.iter().any(|weight| weight.abs() < 0.1) {
+                continue;
+            }
+            crossing += 1;
+            let way = DVec3::from_array(found.normal) * (2.0 * found.distance);
+            let direction = |step: &mut [f64]| {
+                for end in [0, 1] {
+                    step[BLOCK * node(end, near).index()..][..3].copy_from_slice(&way.to_array());
+                }
+            };
+            assert_eq!(part(&[], &direction), 1.0, "nothing is in the way");
+            stopped += usize::from(part(&[*near], &direction) < 0.5);
+        }
+        assert!(crossing > 0 && 2 * stopped > crossing, "{stopped} of {crossing}");
     }
 
     #[test]
