@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::coordinates::{CoordinateMap, Dof};
 use crate::energy::thick::normal;
-use crate::model::{ContactPair, Network, NodeId, PassId};
+use crate::model::{ContactPair, Network, NodeId, PassId, WrapPair};
 
 /// A node next to another, in some periodic image.
 type Around = (NodeId, [i16; 2]);
@@ -28,18 +28,29 @@ impl Sides {
             if contact.passes.iter().flatten().any(|&pass| network.is_out(pass)) {
                 continue;
             }
-            let side = |pair: ContactPair| contact.pairs.iter().find(|wrap| wrap.pair == pair);
-            let (Some(course), Some(leg)) = (side(ContactPair::Course), side(ContactPair::Leg)) else { continue };
+            let pairs = |pair: ContactPair| contact.pairs.iter().filter(move |wrap| wrap.pair == pair);
+            let Some(course) = pairs(ContactPair::Course).next() else { continue };
             let node = |pass: PassId, image| (network.pass_node[pass.index()], image);
-            let first = [course, leg].map(|pair| node(pair.outward_at_first, pair.image_at_first));
+            let at = |(node, image): Around| {
+                let [i, j] = image.map(f64::from);
+                network.position[node.index()] + i * periods[0] + j * periods[1]
+            };
+            let beside = node(course.outward_at_first, course.image_at_first);
+            let other = (contact.nodes[1], [0; 2]);
+            // Of loops that are worked together, the leg that stands most across says where the front is: others come from aside.
+            let across = |wrap: &&WrapPair| {
+                let below = at(node(wrap.outward_at_first, wrap.image_at_first));
+                let [to_leg, to_other] = [below, at(other)].map(|x| x - at(beside));
+                to_leg.cross(to_other).length() / to_leg.length()
+            };
+            let most = |a: &&WrapPair, b: &&WrapPair| across(a).total_cmp(&across(b));
+            let Some(leg) = pairs(ContactPair::Leg).max_by(most) else { continue };
+            let first = [beside, node(leg.outward_at_first, leg.image_at_first)];
             let second = [course, leg].map(|pair| node(pair.outward_at_second, pair.image_at_second));
             for (k, [a, b]) in [first, second].into_iter().enumerate() {
                 let here = contact.nodes[k];
                 let mut corners = [a, b, (contact.nodes[1 - k], [0; 2])];
-                let [x, y, z] = corners.map(|(node, image)| {
-                    let [i, j] = image.map(f64::from);
-                    network.position[node.index()] + i * periods[0] + j * periods[1]
-                });
+                let [x, y, z] = corners.map(at);
                 if (y - x).cross(z - x).dot(network.front[here.index()]) < 0.0 {
                     corners.swap(0, 1);
                 }
@@ -63,6 +74,12 @@ impl Sides {
     #[must_use]
     pub fn softness(&self) -> f64 {
         0.5 * self.distance * self.distance
+    }
+
+    /// All of them.
+    #[cfg(test)]
+    pub(super) fn corners(&self) -> &[Option<[Around; 3]>] {
+        &self.around
     }
 
     /// Nodes around a node of a finite fabric.

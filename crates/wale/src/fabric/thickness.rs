@@ -74,6 +74,12 @@ impl ThickElements {
         }
         let inner = LegContact { stiffness: thickness.leg_stiffness, distance };
         let kind = |pass: PassId| network.segment_kind[pass.index()];
+        let loop_of = loop_of_nodes(network);
+        // Legs of loops that are worked together go to the same loop, and cross on their way.
+        let together = |a: &Neighbour, d: &Neighbour| {
+            let [a_at, d_at] = [a, d].map(|at| loop_of[network.pass_node[at.pass.index()].index()]);
+            a_at.is_some() && a_at == d_at && a.image == d.image
+        };
         for y in 0..network.yarn_count() {
             let yarn = YarnId::new(y);
             for pass in network.yarn_passes(yarn).map(PassId::new) {
@@ -88,8 +94,10 @@ impl ThickElements {
                 if kind(a.pass) != SegmentKind::Leg || kind(c.pass) != SegmentKind::Leg {
                     continue;
                 }
-                let four = [a, b, c, d].map(place);
-                self.legs.push(beside(network, sides, inner, four), stencil(network, sides, map, four));
+                if !together(&a, &d) {
+                    let four = [a, b, c, d].map(place);
+                    self.legs.push(beside(network, sides, inner, four), stencil(network, sides, map, four));
+                }
                 let facing = LegContact { stiffness: thickness.leg_stiffness, distance: thickness.facing_distance };
                 for loops in 1..=FACING_LOOPS {
                     let [Some(sinker), Some(c), Some(d)] =
@@ -100,7 +108,7 @@ impl ThickElements {
                     if kind(sinker.pass) != SegmentKind::Sinker || kind(c.pass) != SegmentKind::Leg {
                         break;
                     }
-                    if facing.distance > 0.0 {
+                    if facing.distance > 0.0 && !together(&a, &d) {
                         let four = [a, b, c, d].map(place).map(|(pass, image, turns)| {
                             let [x, y, z] = map.position(network.pass_node[pass.index()], image);
                             [x, y, z, map.sliding(pass, turns)]
@@ -111,6 +119,15 @@ impl ThickElements {
             }
         }
     }
+}
+
+/// The loop that each node is an own node of.
+fn loop_of_nodes(network: &Network) -> Vec<Option<u32>> {
+    let mut loops = vec![None; network.node_count()];
+    for (of, at) in (0..).zip(&network.loops) {
+        at.nodes.iter().for_each(|node| loops[node.index()] = Some(of));
+    }
+    loops
 }
 
 /// Whether two passes lie on different faces of the fabric.
@@ -143,4 +160,55 @@ pub(crate) fn stencil<const P: usize, const N: usize>(
 ) -> [u32; N] {
     let coordinates = places.map(|place| sides.coordinates(map, network, place));
     std::array::from_fn(|i| coordinates[i / 13][i % 13])
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::fabric::TileCoordinates;
+    use crate::pattern::knit;
+    use crate::scene::Scene;
+
+    /// The repeat of a chart of thick yarns, and how many pairs of legs beside a sinker touch in it.
+    fn repeat(rows: &str) -> (Network, usize) {
+        let text = format!("schema = 1\n[fabric]\ncontacts = \"thick\"\n[fabric.chart]\nsymbols = [{rows}]\n");
+        let scene = Scene::from_text(&text, "eyelets.toml").unwrap();
+        let (chart, card) = (scene.structure.chart().unwrap(), scene.fabric.knit().unwrap());
+        let tile = knit::tile(chart, card).unwrap();
+        let mut map = TileCoordinates::new(&tile);
+        let legs = Mechanics::new(&tile, &scene.yarns, &scene.fabric, &mut map).thick.legs.len();
+        (tile, legs)
+    }
+
+    const EYELETS: [&str; 3] = [r#""o/kkkk", "kkkkkk""#, r#""/okkkk", "kkkkkk""#, r#""o\\kkkk", "kkkkkk""#];
+
+    #[test]
+    fn legs_that_cross_in_a_decrease_do_not_push_each_other() {
+        assert_eq!(repeat(r#""kkkkkk", "kkkkkk""#).1, 12);
+        for rows in EYELETS {
+            // No sinkers beside the yarn-over, and not the two loops below the decrease.
+            assert_eq!(repeat(rows).1, 9, "{rows}");
+        }
+    }
+
+    #[test]
+    fn a_decrease_knows_its_front() {
+        for rows in EYELETS {
+            let (tile, _) = repeat(rows);
+            let sides = Sides::new(&tile, 1e-3);
+            let periods = tile.periods.unwrap();
+            let mut least = f64::INFINITY;
+            for (node, corners) in sides.corners().iter().enumerate() {
+                let [x, y, z] = corners.unwrap().map(|(node, [i, j])| {
+                    tile.position[node.index()] + f64::from(i) * periods[0] + f64::from(j) * periods[1]
+                });
+                let normal: DVec3 = (y - x).cross(z - x) / ((y - x).length() * (z - x).length());
+                least = least.min(normal.dot(tile.front[node]));
+            }
+            // In plain stitches 0.72.
+            assert!(least > 0.25, "{rows}: {least}");
+        }
+    }
 }
