@@ -202,7 +202,7 @@ mod tests {
     /// Distances of all segments that are near each other in a repeat at rest, over those at which they begin to touch.
     fn distances(rows: &str, strand_contact: bool) -> Vec<f64> {
         let text = format!(
-            "schema = 1\n[fabric]\ncontacts = \"thick\"\n[fabric.chart]\nsymbols = [{rows}]\ncolumns = 14\nrows = 8\n"
+            "schema = 1\n[fabric]\ncontacts = \"thick\"\n[fabric.chart]\nsymbols = [{rows}]\ncolumns = 10\nrows = 8\n"
         );
         let scene = Scene::from_text(&text, "lace.toml").unwrap();
         let (chart, card) = (scene.structure.chart().unwrap(), scene.fabric.knit().unwrap());
@@ -226,13 +226,13 @@ mod tests {
 
     #[test]
     fn segments_of_lace_do_not_fall_through_each_other() {
-        let lace = r#""pkkkkkp", "pko^okp", "pkkkkkp", "po\\k\\op""#;
-        let least = |all: Vec<f64>| all.into_iter().fold(f64::INFINITY, f64::min);
+        let lace = r#""kkkkk", "ko^ok""#;
+        let least = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
         let [with, without] = [true, false].map(|contact| distances(lace, contact));
         // Yarns press each other by less than half of their thickness.
-        assert!(with.len() > 100 && least(with.clone()) > 0.5, "{}", least(with));
-        // Without, many lie in each other.
-        assert!(without.iter().filter(|&&apart| apart < 0.3).count() > 10, "{:?}", least(without));
+        assert!(with.len() > 50 && least(&with) > 0.5, "{} of {}", least(&with), with.len());
+        // Without, several lie in each other.
+        assert!(without.iter().filter(|&&apart| apart < 0.3).count() > 5, "{}", least(&without));
     }
 
     #[test]
