@@ -13,6 +13,8 @@ use crate::model::{Network, NodeId, PassId, Yarns};
 pub const BEGINS: f64 = 0.9;
 /// The same as a share of their distance in the layout, so that the layout is not pushed apart.
 const OF_LAYOUT: f64 = 0.8;
+/// Share of touching that the distance grows to in a soft start where the layout has less.
+const GROWS_TO: f64 = 0.5;
 /// Strands nearer than this share of touching in the layout lie through each other there: nothing tells them apart.
 const NOTHING: f64 = 0.02;
 /// How much further than needed strands are looked for, and the most that their speed adds to it, in yarn radii.
@@ -156,12 +158,14 @@ impl Strands {
     }
 
     /// The strands that may meet in a time `h` \[s\], in a fixed order. `at` is where a node is \[m\], `velocity` how it
-    /// moves \[m/s\].
+    /// moves \[m/s\], `grown` how far a soft start has come, from 0 to 1; strands too near in the layout are by then far enough apart
+    /// for their curves too, which leave the straight lines between the nodes.
     pub fn find(
         &mut self,
         at: impl Fn(usize) -> DVec3 + Sync,
         velocity: impl Fn(usize) -> DVec3 + Sync,
         h: f64,
+        grown: f64,
     ) -> &[NearStrands] {
         self.find_normals(&at);
         let (strands, normals) = (&self.strands, &self.normals);
@@ -210,6 +214,7 @@ impl Strands {
             let layout = [a.layout[0], a.layout[1], b.layout[0], b.layout[1]].map(|x| x.to_array());
             let layout = closest(&layout).distance;
             let distance = holds_off_below(touching, layout)?;
+            let distance = distance.max(grown * GROWS_TO * touching);
             Some(NearStrands { nodes, offsets: offsets.map(|x| x.to_array()), distance })
         };
         self.parts.resize_with(pairs.len().div_ceil(PART), Vec::new);

@@ -42,6 +42,9 @@ pub enum StepError {
     /// Two strands of yarn would pass through each other.
     #[error("two strands of yarn would pass through each other")]
     Passage,
+    /// Strands of yarn that may meet would move too far past each other to be kept apart.
+    #[error("strands of yarn would move too far past each other")]
+    TooFar,
     /// No step along the search direction lowers the energy.
     #[error("no step along the search direction lowers the energy")]
     LineSearch,

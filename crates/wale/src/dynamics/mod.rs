@@ -9,6 +9,7 @@ pub mod loop_shapes;
 mod remaining;
 mod scatter;
 mod selected;
+pub(crate) mod soft_start;
 pub mod state;
 pub mod step;
 mod strands;

@@ -25,14 +25,14 @@ impl System {
     }
 
     /// Finds the strands that may meet during a step of length `h`.
-    pub(crate) fn find_strand_contacts(&mut self, state: &State, h: f64) {
+    pub(crate) fn find_strand_contacts(&mut self, state: &State, h: f64, grown: f64) {
         if self.strands.is_empty() {
             return;
         }
         let (coordinates, q) = (&self.coordinates, &state.coordinates);
         let at = |node: usize| coordinates.position_of(node, q);
         let velocity = |node: usize| DVec3::from_slice(&state.velocities[BLOCK * node..]);
-        let found = self.strands.find(at, velocity, h);
+        let found = self.strands.find(at, velocity, h, grown);
         let set = &mut self.strand_contacts.set;
         set.elements.clear();
         set.stencils.clear();
@@ -72,6 +72,18 @@ impl System {
             first_meeting(&set.elements[index].ends(&start), &way).map_or(1.0, |t| PART * t)
         };
         ways.map(way).reduce(|| 1.0, f64::min)
+    }
+
+    /// How far strands that may meet move past each other at most, from one state to another \[m\].
+    pub(crate) fn strands_shift(&self, from: &[f64], to: &[f64]) -> f64 {
+        let set = &self.strand_contacts.set;
+        let shift = |index: usize| {
+            let (start, end) = (set.local(index, from), set.local(index, to));
+            let way = |k: usize| DVec3::from_slice(&end[3 * k..]) - DVec3::from_slice(&start[3 * k..]);
+            let apart = [(0, 2), (0, 3), (1, 2), (1, 3)].map(|(i, k)| way(i).distance_squared(way(k)));
+            apart.into_iter().fold(0.0, f64::max)
+        };
+        (0..set.len()).into_par_iter().with_min_len(1024).map(shift).reduce(|| 0.0, f64::max).sqrt()
     }
 
     /// Whether two strands have passed through each other on the straight way from one state to another.

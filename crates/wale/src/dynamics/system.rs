@@ -42,6 +42,8 @@ pub struct System {
     pub(super) bends: Term<(Bending, Rate), 12>,
     /// Yarns with a thickness: their segments, bends and legs, in place of the stiffness of those above.
     pub(super) thick_segments: Term<Thick<Stretch, 2>, 26>,
+    /// Stretch stiffness of both while they have a share of it; empty otherwise.
+    pub(super) full_stiffness: Vec<f64>,
     pub(super) thick_bends: Term<Thick<(Bending, Rate), 3>, 39>,
     pub(super) legs: Term<Thick<LegContact, 4>, 52>,
     pub(super) facing: Term<LegContact, 16>,
@@ -185,6 +187,7 @@ impl System {
             segments: Term::new(segments, &chunks),
             bends: Term::new(bends, &chunks),
             thick_segments: Term::new(mechanics.thick.stretch, &chunks),
+            full_stiffness: Vec::new(),
             thick_bends: Term::new(thick_bends, &chunks),
             legs: Term::new(mechanics.thick.legs, &chunks),
             facing: Term::new(mechanics.thick.facing, &chunks),

@@ -63,6 +63,8 @@ pub struct Simulation {
     pub self_contact: bool,
     /// Whether strands of a knit that share no contact keep out of each other, be they neighbours or not.
     pub strand_contact: bool,
+    /// Time in which yarn comes to its full stretch stiffness \[s\], so that a stretched layout does not snap; zero for at once.
+    pub soft_start: f64,
     /// Seed of the small disturbance of the initial layout; the same seed gives the same run.
     pub seed: u64,
     /// Longest time step \[s\].

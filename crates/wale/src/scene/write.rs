@@ -238,6 +238,7 @@ fn simulation(scene: &Scene) -> Written<SimulationText> {
         friction: Some(settings.friction),
         self_contact: Some(settings.self_contact),
         strand_contact: Some(settings.strand_contact),
+        soft_start: some(settings.soft_start)?,
         seed: Some(narrow("seed", settings.seed)?),
         largest_step: some(settings.largest_step)?,
         smallest_step: some(settings.smallest_step)?,

@@ -15,6 +15,7 @@ use crate::dynamics::chunks::Chunks;
 use crate::dynamics::grips::{GripReport, Grips};
 use crate::dynamics::implicit_euler::{Newton, NewtonReport, NewtonSettings, StepError};
 use crate::dynamics::linear::LinearSettings;
+use crate::dynamics::soft_start::{progress, stretch_share};
 use crate::dynamics::step::Touch;
 use crate::dynamics::system::{Energies, System};
 use crate::dynamics::workspace::Workspace;
@@ -84,6 +85,9 @@ const EASY: usize = 3;
 const HARD: usize = 8;
 /// A step whose last iteration still moved a node this far is taken again, shorter \[yarn radii\].
 const FAR_FROM_CONVERGED: f64 = 1.0;
+/// A step in which strands that may meet move further past each other is taken again, shorter \[yarn radii\]: where they lie beside
+/// their nodes is held for a step, and where it turns they must not be on the other side by then.
+const FAR_PAST: f64 = 1.0;
 /// Attempts after which yarn that is pulled through other yarn is let through: the run goes on, and `wale check` tells of it.
 const MOST_REFUSED: u32 = 8;
 
@@ -194,7 +198,8 @@ impl Simulation {
             let pieces = ((stop - self.state.time) / wanted - 1e-9).ceil().max(1.0);
             let h = (stop - self.state.time) / pieces;
             let end = if pieces > 1.0 { self.state.time + h } else { stop };
-            match self.attempt(h, end, rejected < MOST_REFUSED) {
+            let refuses = rejected < MOST_REFUSED && 0.5 * h >= settings.smallest_step;
+            match self.attempt(h, end, refuses) {
                 Ok(report) => {
                     let next = match report.iterations {
                         0..=EASY if rejected == 0 => wanted * 1.5,
@@ -216,15 +221,18 @@ impl Simulation {
         }
     }
 
-    /// Solves a step into `self.q` and leaves the state as it is; one in which strands pass through each other may be refused.
-    fn attempt(&mut self, h: f64, end: f64, refuse_passages: bool) -> Result<NewtonReport, StepError> {
+    /// Solves a step into `self.q` and leaves the state as it is. One in which strands pass through each other, or move so far past
+    /// each other that they might, is an error if it `refuses`.
+    fn attempt(&mut self, h: f64, end: f64, refuses: bool) -> Result<NewtonReport, StepError> {
         self.renew_loads(h, end);
+        let begun = progress(end, self.plan.simulation.soft_start);
+        self.system.soften(stretch_share(begun));
         let settings = &self.plan.simulation;
         self.system.begin_step(&self.state, h, settings.friction, &mut self.compression);
         self.system.find_touches(&self.plan.obstacles, &self.state, h, &mut self.touches);
         if settings.self_contact {
             self.system.find_self_contacts(&self.state, h);
-            self.system.find_strand_contacts(&self.state, h);
+            self.system.find_strand_contacts(&self.state, h, begun.unwrap_or(0.0));
         }
         self.free.copy_from_slice(self.system.coordinates.free());
         // Start where the velocities lead, as far as the order of the nodes along the yarns allows.
@@ -249,8 +257,14 @@ impl Simulation {
         if !report.converged && report.last_move > FAR_FROM_CONVERGED * self.system.least_radius() {
             return Err(StepError::NotConverged { last_move: report.last_move });
         }
-        if refuse_passages && self.system.strands_pass(&self.state.coordinates, &self.q) {
-            return Err(StepError::Passage);
+        if refuses && self.plan.simulation.strand_contact {
+            let before = &self.state.coordinates;
+            if self.system.strands_shift(before, &self.q) > FAR_PAST * self.system.least_radius() {
+                return Err(StepError::TooFar);
+            }
+            if self.system.strands_pass(before, &self.q) {
+                return Err(StepError::Passage);
+            }
         }
         Ok(report)
     }
@@ -279,6 +293,7 @@ impl Simulation {
 
     /// A report of the state as it stands, as of a step of no length.
     pub fn standing(&mut self) -> StepReport {
+        self.system.soften(stretch_share(progress(self.state.time, self.plan.simulation.soft_start)));
         self.report(0.0, 0, NewtonReport::default())
     }
 

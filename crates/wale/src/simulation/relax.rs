@@ -36,6 +36,7 @@ impl Simulation {
         let keep = (self.plan.clone(), std::mem::take(&mut self.grips), self.system.stiffness_damping());
         self.plan.obstacles.clear();
         self.plan.simulation.friction = false;
+        self.plan.simulation.soft_start = 0.0;
         self.plan.simulation.newton_iterations = self.plan.simulation.newton_iterations.max(30);
         self.grips = Grips::default();
         self.system.set_gravity(glam::DVec3::ZERO);

@@ -25,6 +25,7 @@ pub(super) fn simulation(text: &SimulationText) -> Result<Simulation, Complaint>
         friction: text.friction.unwrap_or(true),
         self_contact: text.self_contact.unwrap_or(true),
         strand_contact: text.strand_contact.unwrap_or(false),
+        soft_start: si(text.soft_start).unwrap_or(0.0),
         seed: u64::from(text.seed.unwrap_or(1)),
         largest_step: si(text.largest_step).unwrap_or(5e-3),
         smallest_step: si(text.smallest_step).unwrap_or(1e-6),

@@ -46,6 +46,10 @@ pub struct SimulationText {
     /// twice as long. false if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strand_contact: Option<bool>,
+    /// Time in which yarn comes from a thousandth of its stretch stiffness to all of it, so that a layout in which it is stretched
+    /// draws together and does not snap; none if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub soft_start: Option<Quantity<Time, NotNegative>>,
     /// Seed of the small disturbance of the initial layout; 1 if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u32>,
