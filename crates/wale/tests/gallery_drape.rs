@@ -92,7 +92,8 @@ fn strands_of_stretched_lace_keep_out_of_each_other_after_a_soft_start() {
     let of = |soft_start| passages(lace("feather and fan", 18, 8, true, soft_start));
     let (hard, soft) = (of("0 s"), of("20 ms"));
     println!("{} crossings on the way from a hard start, {} from a soft one", hard.crossings, soft.crossings);
-    assert!(hard.crossings > 10 && soft.crossings <= hard.crossings / 5);
+    assert!(hard.crossings > 10);
+    assert_eq!(soft.crossings, 0);
 }
 
 #[test]
