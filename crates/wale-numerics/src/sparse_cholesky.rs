@@ -77,6 +77,10 @@ impl std::fmt::Debug for SparseCholesky {
     }
 }
 
+/// First and largest relative shift of a matrix whose rounding alone makes it indefinite.
+const ROUNDING: f64 = 1e-14;
+const LARGEST_ROUNDING: f64 = 1e-7;
+
 impl SparseCholesky {
     /// Analyses the pattern and takes all memory that factoring and solving will need.
     ///
@@ -172,6 +176,26 @@ impl SparseCholesky {
         }
         self.factored = true;
         Ok(())
+    }
+
+    /// Factors a matrix that is positive definite but for what is rounded off in it, with the least of a few relative shifts; the first is none.
+    /// What is stiff beside what is soft leaves such: of `k + c` and `−k`, with `c` a seventeenth digit of `k`, nothing remains of `c`.
+    ///
+    /// # Errors
+    /// As [`SparseCholesky::factor`], if the largest shift does not do either.
+    ///
+    /// # Panics
+    /// If the matrix is over another pattern.
+    pub fn factor_rounded(&mut self, matrix: &BlockMatrix) -> Result<(), CholeskyError> {
+        let mut shift = 0.0;
+        loop {
+            match self.factor(matrix, shift) {
+                Err(CholeskyError::NotPositiveDefinite { .. }) if shift < LARGEST_ROUNDING => {
+                    shift = f64::max(16.0 * shift, ROUNDING);
+                }
+                result => return result,
+            }
+        }
     }
 
     /// Solves in place for all slots; fixed slots come back as zero.

@@ -167,6 +167,32 @@ fn cholesky_says_when_the_matrix_is_not_positive_definite() {
 }
 
 #[test]
+fn a_matrix_that_only_its_rounding_makes_indefinite_is_factored() {
+    let mut matrix = random_matrix(40, 6, 21);
+    let free = vec![true; matrix.dimension()];
+    let pattern = Arc::clone(matrix.pattern());
+    let mut cholesky = SparseCholesky::new(pattern, &free, BlockOrder::MinimumDegree).unwrap();
+    let mut spike = vec![0.0; matrix.dimension()];
+    let mut fails = |matrix: &mut BlockMatrix, depth: f64, rounded: bool| {
+        spike[33] = -depth;
+        matrix.add_diagonal(&spike, 1.0);
+        let result = if rounded { cholesky.factor_rounded(matrix) } else { cholesky.factor(matrix, 0.0) };
+        matrix.add_diagonal(&spike, -1.0);
+        result.is_err()
+    };
+    // The depth at which the matrix just is not positive definite.
+    let (mut sound, mut broken) = (0.0, 1e3);
+    for _ in 0..60 {
+        let middle = 0.5 * (sound + broken);
+        *(if fails(&mut matrix, middle, false) { &mut broken } else { &mut sound }) = middle;
+    }
+    let broken = broken * (1.0 + 1e-15);
+    assert!(fails(&mut matrix, broken, false) && !fails(&mut matrix, broken, true));
+    // What is indefinite in earnest stays so.
+    assert!(fails(&mut matrix, 1.01 * broken, true) && !fails(&mut matrix, 0.99 * broken, true));
+}
+
+#[test]
 fn a_relative_shift_multiplies_the_diagonal() {
     let mut matrix = random_matrix(25, 4, 31);
     let free = vec![true; matrix.dimension()];

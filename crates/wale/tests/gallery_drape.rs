@@ -3,17 +3,19 @@
 mod play;
 
 use play::play;
-use wale::geometry::{CurveSettings, Passages, curves};
+use wale::geometry::{CrossingOrder, CurveSettings, Passages, curves, fronts};
 use wale::measure::shadow_area;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start};
 
-#[test]
-fn six_fabrics_of_one_yarn_drape_differently() {
-    let names = ["garter", "rib", "feather-and-fan", "open-diamonds", "flame-chevron", "plain-weave"];
+/// Contacts in order for one that may be seen from its back: where lace curls, the side that a contact shows is not always told from its
+/// neighbours.
+const SEEN_FROM_THE_BACK: usize = 1000;
+
+/// Drops fabrics of the gallery and looks at how they came to rest; returns the parts of their shadows that are left.
+fn drape<const N: usize>(names: [&str; N]) -> [f64; N] {
     println!("fabric           nodes  shadow lying  shadow draped  part   depth     speed");
-    let mut parts = Vec::new();
-    for name in names {
+    names.map(|name| {
         let played = play(&format!("drape/{name}.toml"));
         let (network, frame, cell) = (played.simulation.network(), played.frame(), played.scene.fabric.cell());
         let flat = wale::model::Frame { positions: network.position.clone(), ..frame.clone() };
@@ -32,23 +34,35 @@ fn six_fabrics_of_one_yarn_drape_differently() {
         );
         // It lies on the sphere, hangs over it, and has come to rest but for slow settling.
         assert!(played.steps.last().is_some_and(|step| step.contacts > 0), "{name}");
-        assert!((30e-3..46e-3).contains(&highest), "{name}: {highest}");
-        assert!(lowest < 15e-3, "{name}: {lowest}");
+        assert!((20e-3..46e-3).contains(&highest), "{name}: {highest}");
+        assert!(lowest < 0.0, "{name}: {lowest}");
         assert!(played.speed < 0.03, "{name}: {}", played.speed);
-        parts.push(draped / lying);
-        // No yarn passes through another, but in two laces: docs/topics/topology.md tells of them.
-        if !["feather-and-fan", "flame-chevron"].contains(&name) {
-            let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
-            let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
-            let mut passages = Passages::of(network);
-            drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
-            assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
-        }
-    }
+        // No yarn passes through another: docs/topics/topology.md tells what lace needs for it.
+        let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
+        let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
+        let mut passages = Passages::of(network);
+        drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
+        assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
+        let order = CrossingOrder::of(network, drawn.last().unwrap(), &fronts(network, &frame));
+        println!("                {} contacts in order, out of order {:?}", order.right, order.wrong);
+        assert!(order.wrong.len() <= order.right / SEEN_FROM_THE_BACK, "{name}: {:?}", order.wrong);
+        draped / lying
+    })
+}
+
+#[test]
+fn fabrics_of_one_yarn_drape_differently() {
+    let [garter, rib, lace, weave] = drape(["garter", "rib", "open-diamonds", "plain-weave"]);
     // Knits give way in every direction, and a weave of the same yarn does not: it keeps the largest part of its shadow.
-    let weave = parts[5];
-    assert!(parts[..5].iter().all(|part| *part < weave), "{parts:?}");
-    assert!(parts.iter().all(|part| (0.3..0.98).contains(part)), "{parts:?}");
+    assert!([garter, rib, lace].iter().all(|part| (0.3..weave).contains(part)), "{garter} {rib} {lace} {weave}");
+    assert!(weave < 0.98);
+}
+
+#[test]
+#[ignore = "ten minutes; small pieces of both laces are let loose below"]
+fn two_more_laces_drape_and_no_yarn_passes_through_another() {
+    // They curl, which open diamonds hardly does.
+    assert!(drape(["feather-and-fan", "flame-chevron"]).iter().all(|part| (0.2..0.4).contains(part)));
 }
 
 /// A small piece of lace, let loose from its layout.
@@ -91,7 +105,8 @@ fn strands_of_stretched_lace_keep_out_of_each_other_after_a_soft_start() {
     // Its layout stretches the yarn to three times its length.
     let of = |soft_start| passages(lace("feather and fan", 18, 8, true, soft_start));
     let (hard, soft) = (of("0 s"), of("20 ms"));
-    println!("{} crossings on the way from a hard start, {} from a soft one", hard.crossings, soft.crossings);
+    let left = [&hard, &soft].map(|passages| passages.pairs().count());
+    println!("{} and {} crossings on the way, {left:?} of them left", hard.crossings, soft.crossings);
     assert!(hard.crossings > 10);
     assert_eq!(soft.crossings, 0);
 }

@@ -120,6 +120,9 @@ pub struct Relax {
     /// Starts from different small disturbances; equilibria need not be unique
     #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub starts: u16,
+    /// How often what has come to rest lowest is shaken gently and relaxed again, to find what lies lower yet
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    pub shakes: u16,
     /// Stiffness of the table under the fabric, in bending stiffness over loop length cubed; left out, that with which the
     /// card's proportions were fitted
     #[arg(long, value_parser = parse_bed)]

@@ -2,6 +2,7 @@
 
 use serde_json::json;
 use wale::dynamics::tile_equilibrium::{TileSettings, relax_from_starts};
+use wale::dynamics::tile_shaking::shaken;
 use wale::measure::Census;
 use wale::pattern::knit;
 
@@ -42,7 +43,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     let usual = TileSettings::of(card);
     let settings = TileSettings { bed: arguments.bed.unwrap_or(usual.bed), ..usual };
     let found = relax_from_starts(&tile, yarns, card, &settings, arguments.starts as usize);
-    let best = &found[0];
+    let best = shaken(&tile, yarns, card, &settings, found[0].clone(), arguments.shakes as usize);
     if !best.converged {
         return Err(Failure::new(
             Code::NotConverged,
@@ -68,6 +69,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
             "energy_per_loop_J": best.energy,
             "iterations": best.iterations,
             "residual": best.residual,
+            "shakes": arguments.shakes,
             "starts": found.iter().map(|at| json!({
                 "converged": at.converged,
                 "wale_spacing_m": at.wale_spacing,

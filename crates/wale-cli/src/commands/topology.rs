@@ -5,13 +5,16 @@ use std::path::Path;
 use serde_json::{Value, json};
 use wale::geometry::{CrossingOrder, CurveSettings, Passages, curves, fronts};
 use wale::measure::Census;
-use wale::model::{Frame, Network, PassId, YarnId};
+use wale::model::{Frame, Network, NodeId, PassId, YarnId};
 
 use crate::arguments::{Check, FrameChoice};
 use crate::exit::{Code, Failure};
 use crate::opened::{OpenedRun, OpenedScene};
 use crate::output::{self, grouped};
 use crate::say;
+
+/// Places of each kind of fault that are said.
+const SHOWN: usize = 5;
 
 /// What was found of one frame.
 struct Found {
@@ -36,7 +39,7 @@ fn scene(arguments: &Check) -> Result<(), Failure> {
     let census = Census::of(&network, &opened.scene.yarns, &opened.scene.fabric);
     let settings = CurveSettings::of(&opened.scene.yarns, &opened.scene.fabric);
     let found = look(&network, &frame, &settings, census.unsupported_loops);
-    report(&arguments.scene, arguments.json, &[("layout", found)], None)
+    report(&arguments.scene, arguments.json, &network, &[("layout", found)], None)
 }
 
 fn run(folder: &Path, as_json: bool) -> Result<(), Failure> {
@@ -58,7 +61,7 @@ fn run(folder: &Path, as_json: bool) -> Result<(), Failure> {
         }
         before = Some(frame);
     }
-    report(folder, as_json, &looked, Some((network, &passages)))
+    report(folder, as_json, network, &looked, Some(&passages))
 }
 
 fn look(network: &Network, frame: &Frame, settings: &CurveSettings, dropped: Vec<[u32; 2]>) -> Found {
@@ -82,32 +85,36 @@ fn look(network: &Network, frame: &Frame, settings: &CurveSettings, dropped: Vec
 fn report(
     path: &Path,
     as_json: bool,
+    network: &Network,
     looked: &[(&str, Found)],
-    passages: Option<(&Network, &Passages)>,
+    passages: Option<&Passages>,
 ) -> Result<(), Failure> {
-    let passed: Vec<[u32; 2]> = passages.map(|(_, passages)| passages.pairs().collect()).unwrap_or_default();
-    let at = |pass: u32| {
-        let network = passages.map(|(network, _)| network)?;
-        let place = network.chart_place[network.pass_node[pass as usize].index()];
-        Some(format!("row {:.0}, column {:.0}", place[1] + 1.0, place[0] + 1.0))
+    let passed: Vec<[u32; 2]> = passages.map(|passages| passages.pairs().collect()).unwrap_or_default();
+    let at = |node: NodeId| {
+        let place = network.chart_place[node.index()];
+        format!("row {:.0}, column {:.0}", place[1] + 1.0, place[0] + 1.0)
     };
+    let of = |pass: u32| network.pass_node[pass as usize];
     if as_json {
         let frames: Vec<Value> = looked.iter().map(|(name, found)| found.json(name)).collect();
         output::json(&json!({
             "path": path,
             "frames": frames,
-            "crossings_on_the_way": passages.map(|(_, passages)| passages.crossings),
+            "crossings_on_the_way": passages.map(|passages| passages.crossings),
             "yarns_passed_through": passed,
         }))?;
     } else {
         say!("{}", path.display())?;
         for (name, found) in looked {
             found.say(name)?;
+            for &node in found.order.wrong.iter().take(SHOWN) {
+                say!("             at {}", at(node))?;
+            }
         }
-        if let Some((_, passages)) = passages {
+        if let Some(passages) = passages {
             say!("  between  {} crossings of drawn yarns, {} of them not undone", passages.crossings, passed.len())?;
-            for [a, b] in passed.iter().take(5) {
-                say!("             at {} and {}", at(*a).unwrap_or_default(), at(*b).unwrap_or_default())?;
+            for &[a, b] in passed.iter().take(SHOWN) {
+                say!("             at {} and {}", at(of(a)), at(of(b)))?;
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from_starts, relax_tile_from};
+use wale::dynamics::tile_shaking::shaken;
 use wale::model::{KnitCard, LoopProportions, Network, YarnCard};
 use wale::pattern::{Chart, knit};
 
@@ -16,11 +17,23 @@ fn starts(loops: usize) -> usize {
     }
 }
 
+/// How often a repeat is shaken, where repeats are: one shake of hundreds of loops moves as many of them up as down.
+fn shakes(loops: usize) -> usize {
+    match loops {
+        0..=20 => 12,
+        21..=60 => 6,
+        61..=200 => 4,
+        _ => 0,
+    }
+}
+
 /// A card and the bed on which its swatches are measured.
 #[derive(Clone)]
 pub struct Model {
     pub proportions: LoopProportions,
     pub settings: TileSettings,
+    /// Whether repeats at rest are shaken.
+    pub shaken: bool,
 }
 
 impl Model {
@@ -37,7 +50,7 @@ impl Model {
             max_iterations: 1500,
             tolerance: 1e-4,
         };
-        Self { proportions, settings }
+        Self { proportions, settings, shaken: false }
     }
 
     pub fn card(&self) -> KnitCard {
@@ -50,7 +63,12 @@ impl Model {
 
     /// Equilibria of a repeat, the lowest first.
     pub fn relaxed(&self, chart: &Chart) -> Vec<TileEquilibrium> {
-        relax_from_starts(&self.tile(chart), &yarn(), &self.card(), &self.settings, starts(chart.loop_count()))
+        let (tile, card, loops) = (self.tile(chart), self.card(), chart.loop_count());
+        let mut found = relax_from_starts(&tile, &yarn(), &card, &self.settings, starts(loops));
+        if self.shaken {
+            found[0] = shaken(&tile, &yarn(), &card, &self.settings, found[0].clone(), shakes(loops));
+        }
+        found
     }
 
     /// Equilibria found from those of a card that differs a little; from anew if one of them is none any more.

@@ -313,7 +313,8 @@ impl Newton {
         let mut stiffened = 0;
         loop {
             self.face_downhill();
-            let factored = if fresh && stiffened == 0 { linear.factor(&self.free) } else { Ok(()) };
+            let factored =
+                if fresh && stiffened == 0 { linear.factor(&self.free, self.convexity >= 1.0) } else { Ok(()) };
             let solved = factored.and_then(|()| linear.solve(&self.couplings, &mut self.direction, close));
             match solved {
                 Ok(report) if !report.negative_curvature => {

@@ -250,15 +250,20 @@ impl Linear {
         }
     }
 
-    /// Takes the fixed slots out of the matrix and factors it.
+    /// Takes the fixed slots out of the matrix and factors it; a `convex` one can be indefinite by its rounding alone.
     ///
     /// # Errors
     /// If the matrix is not positive definite or not finite, as far as that shows here.
-    pub fn factor(&mut self, free: &[bool]) -> Result<(), LinearError> {
+    pub fn factor(&mut self, free: &[bool], convex: bool) -> Result<(), LinearError> {
         match self {
             Self::Cholesky(direct) => {
                 direct.matrix.fix_slots(free, 1.0);
-                direct.factor.cholesky.factor(&direct.matrix, 0.0)?;
+                let Direct { matrix, factor, .. } = &mut **direct;
+                if convex {
+                    factor.cholesky.factor_rounded(matrix)?;
+                } else {
+                    factor.cholesky.factor(matrix, 0.0)?;
+                }
             }
             Self::ConjugateGradient(iterative) => {
                 iterative.matrix.fix_slots(free, 1.0);

@@ -22,6 +22,7 @@ mod tile_descent;
 pub mod tile_equilibrium;
 mod tile_places;
 pub mod tile_sensitivity;
+pub mod tile_shaking;
 pub mod tile_stiffness;
 mod tile_system;
 mod weave_systems;

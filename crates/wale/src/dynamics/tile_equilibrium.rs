@@ -71,7 +71,7 @@ impl Default for TileSettings {
 }
 
 /// A tile at rest.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TileEquilibrium {
     /// Coordinates of the own slots, then the two periods \[m\].
     pub coordinates: Vec<f64>,
@@ -196,16 +196,7 @@ pub fn relax_tile_from(
 /// The layout, disturbed a little.
 fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64> {
     let mut start = TileCoordinates::new(network).initial(network);
-    let mut random = settings.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    for node in 0..network.node_count() {
-        for k in 0..3 {
-            random ^= random << 13;
-            random ^= random >> 7;
-            random ^= random << 17;
-            let unit = (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
-            start[BLOCK * node + k] += settings.noise * length * unit;
-        }
-    }
+    displace(&mut start[..BLOCK * network.node_count()], settings.noise * length, settings.seed);
     for of_loop in &network.loops {
         let side = if of_loop.knit { 0.5 } else { -0.5 };
         for node in &of_loop.nodes {
@@ -213,4 +204,18 @@ fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64
         }
     }
     start
+}
+
+/// Moves nodes, given with their own slots, at random by up to an amplitude \[m\] along each axis.
+pub(super) fn displace(nodes: &mut [f64], amplitude: f64, seed: u64) {
+    let mut random = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    for node in nodes.chunks_exact_mut(BLOCK) {
+        for x in &mut node[..3] {
+            random ^= random << 13;
+            random ^= random >> 7;
+            random ^= random << 17;
+            let unit = (random >> 11) as f64 / (1u64 << 52) as f64 - 1.0;
+            *x += amplitude * unit;
+        }
+    }
 }
