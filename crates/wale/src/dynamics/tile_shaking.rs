@@ -7,6 +7,8 @@ use crate::model::{FabricCard, Network, Yarns};
 /// How far a shake moves a node along each axis at most, in loop lengths \[–\]: about half of what yarns of knits are apart at a contact, so
 /// that loops are moved past what holds them up and not through each other. Twice as much may end in repeats that have folded up.
 const AMPLITUDE: f64 = 0.03;
+/// Part of its energy by which another equilibrium is lower, and not the same one rounded otherwise.
+const SAME: f64 = 1e-9;
 /// Iterations after which a shake has led nowhere.
 const GIVES_UP: usize = 200;
 
@@ -36,7 +38,7 @@ pub fn shaken(
         let nodes = &mut start[..BLOCK * network.node_count()];
         displace(nodes, amplitude, settings.seed.wrapping_add(shake));
         let found = relax_tile_from(network, &yarns, &card, &settings, start);
-        if found.converged && (!lowest.converged || found.energy < lowest.energy) {
+        if found.converged && (!lowest.converged || found.energy < lowest.energy * (1.0 - SAME)) {
             lowest = found;
         }
     }
