@@ -1,5 +1,6 @@
 //! A tile at rest that is shaken gently until nothing lower is found, as a swatch is that is washed and tumbled.
 
+use super::tile_contacts::TileContacts;
 use super::tile_equilibrium::{TileEquilibrium, TileSettings, displace, relax_tile_from};
 use crate::fabric::coordinates::BLOCK;
 use crate::model::{FabricCard, Network, Yarns};
@@ -30,7 +31,9 @@ pub fn shaken(
     shakes: usize,
 ) -> TileEquilibrium {
     let (yarns, card) = (yarns.into(), card.into());
-    let amplitude = AMPLITUDE * card.unit_length();
+    // What is displaced more than yarns are thick has passed through itself, where segments hold each other off.
+    let held_off = settings.strand_contact && TileContacts::of(network, &card).is_some();
+    let amplitude = if held_off { settings.noise.min(AMPLITUDE) } else { AMPLITUDE } * card.unit_length();
     let settings = TileSettings { max_iterations: settings.max_iterations.min(GIVES_UP), ..*settings };
     let mut lowest = rest;
     for shake in 0..shakes as u64 {
