@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 use wale::dynamics::tile_equilibrium::TileEquilibrium;
 use wale::dynamics::tile_sensitivity::TileSensitivity;
-use wale::model::{LoopProportions, Thickness};
+use wale::model::{LoopProportions, Thickness, YarnCard};
 use wale_numerics::dense::SmallSystem;
 
-use super::sizes::{Model, STOCKINETTE, spacing, yarn};
+use super::sizes::{Model, STOCKINETTE, spacing};
 use super::swatches::Swatch;
 
 /// Where a number lies in the card.
@@ -160,11 +160,12 @@ impl<'a> Fit<'a> {
         let of = |(k, swatch): (usize, &&Swatch)| -> Vec<[f64; 2]> {
             let (tile, lowest) = (here.tile(&swatch.repeat), &at[k][0]);
             // One that is about to leave for another equilibrium says nothing of the slope.
-            let Some(there) = TileSensitivity::new(&tile, &yarn(), &here.card(), &here.settings, lowest) else {
+            let Some(there) = TileSensitivity::new(&tile, &YarnCard::unit(), &here.card(), &here.settings, lowest)
+            else {
                 return vec![[0.0; 2]; x.len()];
             };
             let change = |model: &Model| {
-                there.change(&model.tile(&swatch.repeat), &yarn(), &model.card(), &model.settings, lowest)
+                there.change(&model.tile(&swatch.repeat), &YarnCard::unit(), &model.card(), &model.settings, lowest)
             };
             models.iter().map(change).collect()
         };

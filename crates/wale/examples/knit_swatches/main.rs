@@ -60,7 +60,7 @@ fn print(title: &str, all: &[Predicted<'_>]) {
         let ([w, h], [mw, mh]) = (one.size, one.measured());
         let repeat = format!("{}x{}", one.swatch.repeat.column_count(), one.swatch.repeat.row_count());
         println!(
-            "  {:<29} {repeat:>6}  {w:.2} {h:.2} against {mw:.2} {mh:.2}  {:+3.0} {:+3.0} %  {:>4} iterations{} {:>6.1} s",
+            "  {:<29} {repeat:>6}  {w:.3} {h:.3} against {mw:.3} {mh:.3}  {:+3.0} {:+3.0} %  {:>4} iterations{} {:>6.1} s",
             one.swatch.name,
             100.0 * (w / mw - 1.0),
             100.0 * (h / mh - 1.0),
@@ -78,7 +78,7 @@ fn print(title: &str, all: &[Predicted<'_>]) {
         correlation(&ranks(&a), &ranks(&b))
     };
     println!("  rms of the logarithms: width {:.3}, height {:.3}", error(0), error(1));
-    println!("  rank correlation: width {:.2}, height {:.2}", rank(0), rank(1));
+    println!("  rank correlation: width {:.3}, height {:.3}", rank(0), rank(1));
     let again = |k: usize| attainable(&all.iter().map(|one| one.measured()[k]).collect::<Vec<_>>(), REPEAT_NOISE[k]);
     println!("  of swatches knitted again: width {:.2}, height {:.2}", again(0), again(1));
 }

@@ -1,9 +1,7 @@
 //! The smallest repeat of a chart of a swatch.
 
-use wale::model::LoopProportions;
+use wale::model::{LoopProportions, YarnCard};
 use wale::pattern::{Chart, Stitch, knit};
-
-use super::sizes::yarn;
 
 /// The smallest repeat of the inside of a chart: a border of a few stitches may be of another pattern. `None` if the rows of no
 /// repeat close.
@@ -27,7 +25,7 @@ pub fn smallest_repeat(rows: &[Vec<Stitch>]) -> Option<Chart> {
         let part = &rows[bottom..bottom + courses];
         let closes = part.iter().all(|row| takes(&row[..left]) == left && takes(&row[left..left + columns]) == columns);
         let chart = || Chart::new(part.iter().map(|row| row[left..left + columns].to_vec()).collect()).ok();
-        let card = LoopProportions::default().card(&yarn(), 1.0);
+        let card = LoopProportions::default().card(&YarnCard::unit(), 1.0);
         closes.then(chart).flatten().filter(|chart| knit::tile(chart, &card).is_ok())
     })
 }

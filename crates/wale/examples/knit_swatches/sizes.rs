@@ -39,7 +39,7 @@ pub struct Model {
 impl Model {
     /// The bed is that of the proportions' contacts.
     pub fn new(proportions: LoopProportions) -> Self {
-        let bed = TileSettings::of(&proportions.card(&yarn(), 1.0)).bed;
+        let bed = TileSettings::of(&proportions.card(&YarnCard::unit(), 1.0)).bed;
         let settings = TileSettings {
             bed,
             noise: 0.01,
@@ -54,7 +54,7 @@ impl Model {
     }
 
     pub fn card(&self) -> KnitCard {
-        self.proportions.card(&yarn(), 1.0)
+        self.proportions.card(&YarnCard::unit(), 1.0)
     }
 
     pub fn tile(&self, chart: &Chart) -> Network {
@@ -64,9 +64,9 @@ impl Model {
     /// Equilibria of a repeat, the lowest first.
     pub fn relaxed(&self, chart: &Chart) -> Vec<TileEquilibrium> {
         let (tile, card, loops) = (self.tile(chart), self.card(), chart.loop_count());
-        let mut found = relax_from_starts(&tile, &yarn(), &card, &self.settings, starts(loops));
+        let mut found = relax_from_starts(&tile, &YarnCard::unit(), &card, &self.settings, starts(loops));
         if self.shaken {
-            found[0] = shaken(&tile, &yarn(), &card, &self.settings, found[0].clone(), shakes(loops));
+            found[0] = shaken(&tile, &YarnCard::unit(), &card, &self.settings, found[0].clone(), shakes(loops));
         }
         found
     }
@@ -74,30 +74,15 @@ impl Model {
     /// Equilibria found from those of a card that differs a little; from anew if one of them is none any more.
     pub fn relaxed_from(&self, chart: &Chart, near: &[TileEquilibrium]) -> Vec<TileEquilibrium> {
         let (tile, card) = (self.tile(chart), self.card());
-        let again =
-            |at: &TileEquilibrium| relax_tile_from(&tile, &yarn(), &card, &self.settings, at.coordinates.clone());
+        let again = |at: &TileEquilibrium| {
+            relax_tile_from(&tile, &YarnCard::unit(), &card, &self.settings, at.coordinates.clone())
+        };
         let mut found: Vec<TileEquilibrium> = near.par_iter().map(again).collect();
         if found.iter().any(|at| !at.converged) {
             return self.relaxed(chart);
         }
         found.sort_by(|a, b| a.energy.total_cmp(&b.energy));
         found
-    }
-}
-
-/// Everything is in proportion to the loop: lengths in loops, forces in `k_b/ℓ²`.
-pub fn yarn() -> YarnCard {
-    YarnCard {
-        linear_density: 1.0,
-        radius: 0.05,
-        stretch_stiffness: 3e4,
-        bending_stiffness: 1.0,
-        friction_coefficient: 0.0,
-        mass_damping: 0.0,
-        stiffness_damping: 0.0,
-        loose_ends: false,
-        plies: 2,
-        twist: 0.0,
     }
 }
 

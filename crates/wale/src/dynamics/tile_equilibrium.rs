@@ -49,6 +49,13 @@ impl TileSettings {
         Self { bed, noise, strand_contact: true, ..Self::default() }
     }
 
+    /// How far nodes of a network may be displaced at random along each axis, in loop lengths \[–\]: what is displaced more than yarns are
+    /// thick has passed through itself, where segments hold each other off.
+    pub(super) fn most_displacement(&self, network: &Network, card: &FabricCard) -> f64 {
+        let held_off = self.strand_contact && TileContacts::of(network, card).is_some();
+        if held_off { self.noise } else { f64::INFINITY }
+    }
+
     /// Bed of fabrics whose yarns meet in one point, and of those whose yarns lie beside each other.
     const POINT_BED: f64 = 10.0;
     const THICK_BED: f64 = 20.0;
@@ -122,12 +129,10 @@ pub fn relax_from_starts(
     starts: usize,
 ) -> Vec<TileEquilibrium> {
     let (yarns, card) = (yarns.into(), &card.into());
-    // What is disturbed more than yarns are thick has passed through itself.
-    let held_off = settings.strand_contact && TileContacts::of(network, card).is_some();
+    let most = settings.most_displacement(network, card);
     let run = |start: usize| {
         let (more, relief) = DISTURBED[start % DISTURBED.len()];
-        let more = if held_off { 1.0 } else { more };
-        let (seed, noise) = (settings.seed + start as u64, settings.noise * more);
+        let (seed, noise) = (settings.seed + start as u64, most.min(settings.noise * more));
         relax_tile(network, &yarns, card, &TileSettings { seed, noise, relief, ..*settings })
     };
     let mut found: Vec<TileEquilibrium> = (0..starts).into_par_iter().map(run).collect();

@@ -1,6 +1,5 @@
 //! A tile at rest that is shaken gently until nothing lower is found, as a swatch is that is washed and tumbled.
 
-use super::tile_contacts::TileContacts;
 use super::tile_equilibrium::{TileEquilibrium, TileSettings, displace, relax_tile_from};
 use crate::fabric::coordinates::BLOCK;
 use crate::model::{FabricCard, Network, Yarns};
@@ -31,9 +30,7 @@ pub fn shaken(
     shakes: usize,
 ) -> TileEquilibrium {
     let (yarns, card) = (yarns.into(), card.into());
-    // What is displaced more than yarns are thick has passed through itself, where segments hold each other off.
-    let held_off = settings.strand_contact && TileContacts::of(network, &card).is_some();
-    let amplitude = if held_off { settings.noise.min(AMPLITUDE) } else { AMPLITUDE } * card.unit_length();
+    let amplitude = settings.most_displacement(network, &card).min(AMPLITUDE) * card.unit_length();
     let settings = TileSettings { max_iterations: settings.max_iterations.min(GIVES_UP), ..*settings };
     let mut lowest = rest;
     for shake in 0..shakes as u64 {
@@ -57,18 +54,7 @@ mod tests {
 
     /// A repeat of thick yarns at rest and shaken.
     fn at_rest(chart: &Chart, shakes: usize) -> [TileEquilibrium; 2] {
-        let yarn = YarnCard {
-            linear_density: 1.0,
-            radius: 0.05,
-            stretch_stiffness: 3e4,
-            bending_stiffness: 1.0,
-            friction_coefficient: 0.0,
-            mass_damping: 0.0,
-            stiffness_damping: 0.0,
-            loose_ends: false,
-            plies: 2,
-            twist: 0.0,
-        };
+        let yarn = YarnCard::unit();
         let card: KnitCard = LoopProportions::thick().card(&yarn, 1.0);
         let tile = knit::tile(chart, &card).unwrap();
         let settings = TileSettings::of(&card);

@@ -29,6 +29,24 @@ pub struct YarnCard {
 }
 
 impl YarnCard {
+    /// The yarn in which [`super::LoopProportions`] are given, for loops of length 1: bending stiffness 1, no friction, no damping.
+    /// Lengths are then in loops `ℓ` and forces in `k_b/ℓ²`.
+    #[must_use]
+    pub fn unit() -> Self {
+        Self {
+            linear_density: 1.0,
+            radius: 0.05,
+            stretch_stiffness: 3e4,
+            bending_stiffness: 1.0,
+            friction_coefficient: 0.0,
+            mass_damping: 0.0,
+            stiffness_damping: 0.0,
+            loose_ends: false,
+            plies: 2,
+            twist: 0.0,
+        }
+    }
+
     /// Whether an end of this yarn can be pulled out of the contacts of a fabric that it is part of so.
     #[must_use]
     pub fn can_be_pulled_out(&self, role: YarnRole) -> bool {
