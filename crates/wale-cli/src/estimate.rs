@@ -3,6 +3,7 @@
 use serde::Serialize;
 use wale::dynamics::linear::DIRECT_UNKNOWNS;
 use wale::model::LinearSolver;
+use wale::scene::Scene;
 
 use crate::exit::{Code, Failure};
 use crate::output::bytes;
@@ -34,6 +35,24 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// What a run of a scene will take.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let [rows, columns] = scene.structure.size().map(|n| n as u64);
+        let solver = scene.plan.simulation.linear_solver;
+        match scene.structure.woven() {
+            Some(_) => Self::of_draft(rows, columns, solver),
+            None => Self::of_chart(rows, columns, solver),
+        }
+    }
+
+    /// What laying it out alone takes.
+    #[must_use]
+    pub fn laid_out(mut self) -> Self {
+        self.memory.truncate(1);
+        self
+    }
+
     /// For a fabric of so many rows and columns.
     #[must_use]
     pub fn of_chart(rows: u64, columns: u64, solver: LinearSolver) -> Self {
@@ -125,6 +144,7 @@ mod tests {
         assert!(failure.message.unwrap().contains("factor of the matrix"));
         assert!(large.check(None).is_ok());
         assert!(estimate(20, 20).check(Some(100_000_000)).is_ok());
+        assert!(estimate(200, 200).laid_out().total() < estimate(200, 200).total() / 5);
         assert_eq!(estimate(u64::MAX, u64::MAX).total(), u64::MAX);
     }
 }

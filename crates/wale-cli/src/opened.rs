@@ -57,12 +57,7 @@ impl OpenedScene {
     /// What a run of it will take.
     #[must_use]
     pub fn estimate(&self) -> Estimate {
-        let [rows, columns] = self.chart_size();
-        let solver = self.scene.plan.simulation.linear_solver;
-        match self.scene.structure.woven() {
-            Some(_) => Estimate::of_draft(rows, columns, solver),
-            None => Estimate::of_chart(rows, columns, solver),
-        }
+        Estimate::of(&self.scene)
     }
 
     /// The fabric as its chart lays it out, without compensation: quick, and enough to count.
@@ -132,6 +127,8 @@ impl OpenedRun {
     pub fn open(folder: &Path, choice: FrameChoice) -> Result<Self, Failure> {
         let reader = RunReader::open(folder)?;
         let scene = Scene::read(&reader.scene_path()).map_err(scene_failure)?;
+        // The scene of a folder is a file that may have been edited.
+        Estimate::of(&scene).laid_out().check(machine::available_memory())?;
         let count = reader.frames().count()?;
         let frames = choice.among(count).ok_or_else(|| {
             Failure::new(Code::Usage, format_args!("{}: there are {count} frames, from 0 on", folder.display()))

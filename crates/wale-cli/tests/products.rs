@@ -107,3 +107,24 @@ fn a_run_too_short_for_a_plot_is_still_a_run() {
     assert_succeeds(&workshop.run("scene.toml", "a.run", &[]));
     assert!(workshop.path("a.run/results/picture.png").exists());
 }
+
+#[test]
+fn yarns_go_as_the_chart_says_before_and_after_a_run() {
+    let workshop = Workshop::new();
+    fs::write(workshop.path("scene.toml"), scene(0.02)).unwrap();
+    let layout = wale(&["check", "--topology", &workshop.text("scene.toml")]);
+    assert_succeeds(&layout);
+    for words in ["each in order along itself", "0 the other way", "0 loops that nothing holds"] {
+        assert!(printed(&layout).contains(words), "{words}: {}", printed(&layout));
+    }
+    assert_succeeds(&workshop.run("scene.toml", "a.run", &[]));
+    let found = json(&["check", "--topology", &workshop.text("a.run"), "--json"]);
+    let frames = found["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 2, "the first and the last");
+    for frame in frames {
+        assert!(frame["contacts_in_order"].as_u64().unwrap() > 50, "{frame}");
+        assert_eq!(frame["contacts_out_of_order"], 0);
+        assert_eq!(frame["broken_yarns"].as_array().unwrap().len(), 0);
+    }
+    assert_eq!(found["yarns_passed_through"].as_array().unwrap().len(), 0);
+}

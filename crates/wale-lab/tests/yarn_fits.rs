@@ -121,6 +121,16 @@ fn a_yarn_is_found_again_from_its_curves() {
 }
 
 #[test]
+fn a_yarn_of_which_all_numbers_are_held_is_evaluated() {
+    let (mut problem, truth) = known();
+    problem.space.bounds = truth.map(|number| [number; 2]);
+    for way in [Way::Local(SwarmSettings::quick()), Way::Gradients(gradients())] {
+        let found = fit(&problem, &Here::new(&problem), &way).unwrap();
+        assert!(found.cost < 0.01, "{}", found.cost);
+    }
+}
+
+#[test]
 fn with_bending_among_its_targets_a_yarn_bends_more_as_it_was_measured() {
     // A fabric that stretches as it did and is said to be twice as stiff in bending: both cannot be had, and a fit gives of each.
     let (mut problem, truth) = known();

@@ -13,6 +13,10 @@ use wale_lab::fabric_file::ArealMass;
 
 use super::Results;
 
+/// Between what stretches tests end \[–\]: nothing is seen of less, and no fabric takes more.
+const LEAST_STRETCH: f64 = 1e-3;
+const MOST_STRETCH: f64 = 10.0;
+
 /// `wale lab`
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, arg_required_else_help = true)]
@@ -190,7 +194,8 @@ pub struct Directed {
     #[allow(missing_docs)]
     #[command(flatten)]
     pub common: Common,
-    /// weft (course), bias, warp (wale), or an angle from the weft such as "30 deg"; may be repeated. All three if left out
+    /// weft (course), bias, warp (wale), or an angle from the weft such as "30 deg"; may be repeated. All three if left out, but for
+    /// picture frames (weft) and tests by yarns and on the bias of KES shear (weft and warp)
     #[arg(long, value_name = "DIRECTION", value_parser = direction, allow_hyphen_values = true)]
     pub direction: Vec<f64>,
 }
@@ -218,7 +223,7 @@ pub struct Stretch {
     #[command(flatten)]
     pub size: Size,
     /// Stretch at which to end, such as "30 %"; left out, 5 N of a swatch 6 cm wide, 500 gf/cm of a strip
-    #[arg(long, value_name = "STRETCH", value_parser = positive::<Ratio>)]
+    #[arg(long, value_name = "STRETCH", value_parser = stretch)]
     pub to: Option<f64>,
     /// Let it leave its plane and wrinkle; needs bending
     #[arg(long)]
@@ -345,6 +350,16 @@ fn positive<D: Dimension>(text: &str) -> Result<f64, String> {
     quantity::<D, Positive>(text)
 }
 
+/// A stretch at which a test ends \[–\].
+fn stretch(text: &str) -> Result<f64, String> {
+    let stretch = positive::<Ratio>(text)?;
+    if (LEAST_STRETCH..=MOST_STRETCH).contains(&stretch) {
+        Ok(stretch)
+    } else {
+        Err("write 0.1 % to 1000 %".to_owned())
+    }
+}
+
 /// The angle of a direction from the weft \[rad\].
 fn direction(text: &str) -> Result<f64, String> {
     let degrees = match text {
@@ -371,6 +386,8 @@ mod tests {
         assert!(direction("weave").unwrap_err().contains("30 deg"));
         assert!(direction("300 deg").is_err());
         assert!((positive::<Length>("5 cm").unwrap() - 0.05).abs() < 1e-15);
+        assert_eq!(stretch("30 %"), Ok(0.3));
+        assert!(stretch("1e9").is_err() && stretch("1e-9 %").unwrap_err().contains("1000 %"));
         assert!((positive::<SheetBending>("1 gf cm^2/cm").unwrap() - 9.806_65e-5).abs() < 1e-18);
         for bad in ["5", "-5 cm", "cm", "0 m"] {
             let error = positive::<Length>(bad).unwrap_err();

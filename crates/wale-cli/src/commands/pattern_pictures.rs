@@ -12,8 +12,9 @@ use wale::record::atomic_file::write_atomically;
 use wale::scene::Scene;
 use wale::simulation::Start;
 
+use crate::estimate::Estimate;
 use crate::exit::{Code, Failure};
-use crate::say;
+use crate::{machine, say};
 
 /// Stitches and rows of a piece, at least.
 const PIECE: [usize; 2] = [16, 20];
@@ -36,6 +37,7 @@ pub fn draw(names: &[String], folder: &Path) -> Result<(), Failure> {
             PIECE[1].next_multiple_of(rows),
         );
         let scene = Scene::from_text(&scene, name).map_err(|error| Failure::new(Code::Bug, error))?;
+        Estimate::of(&scene).check(machine::available_memory())?;
         let mut start = Start::new(&scene.structure, &scene.yarns, &scene.fabric, true);
         scene.color_yarns(&mut start.network);
         let network = start.network;

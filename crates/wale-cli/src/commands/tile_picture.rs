@@ -28,7 +28,8 @@ pub fn draw_tile(arguments: &Render) -> Result<PathBuf, Failure> {
         let wanted = (ACROSS * tile.radius() / period).ceil();
         if wanted.is_finite() { (wanted as usize).clamp(1, MOST_REPEATS) } else { 1 }
     });
-    let curves = drawn_curves(&tile, repeats);
+    let curves = drawn_curves(&tile, repeats)
+        .map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", arguments.run.display())))?;
     let [width, height] = arguments.size.unwrap_or([1600, 1200]).map(|side| side as usize);
     let subject = Subject { curves: &curves, scalars: None, solids: &[] };
     let (points, thick) = subject.extent_points();

@@ -6,6 +6,9 @@ use crate::shell::TriangleMesh;
 use crate::shell::error::{ShellError, positive};
 use crate::shell::polygon::mesh_polygon_through;
 
+/// Most edges around a specimen.
+const MOST_AROUND: f64 = 1e4;
+
 /// A round specimen on a round support.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoundSpecimen {
@@ -25,6 +28,10 @@ pub struct RoundSpecimen {
 pub fn round_specimen(radius: f64, support: f64, edge: f64) -> Result<RoundSpecimen, ShellError> {
     positive("radius of the support", support)?;
     positive("edge length of the mesh", edge)?;
+    if TAU * radius / edge > MOST_AROUND {
+        let must = "long enough that no more than 10,000 of them go around the specimen";
+        return Err(ShellError::Number { what: "edge length of the mesh", value: edge, must });
+    }
     let row = 0.75f64.sqrt() * edge;
     let ring = support + 0.5 * row;
     if !(radius > ring + row && radius < f64::INFINITY) {
@@ -75,5 +82,6 @@ mod tests {
         }));
         assert!(round_specimen(0.09, 0.09, 0.008).is_err());
         assert!(round_specimen(0.15, 0.09, f64::NAN).is_err());
+        assert!(round_specimen(0.15, 0.09, 1e-300).is_err());
     }
 }

@@ -62,11 +62,11 @@ fn key(question: &Question) -> String {
 
 impl Journal {
     /// Opens the journal of a problem, told by its fingerprint, with all entries that are whole: the last line of a fit that was killed
-    /// may not be, and is cut off.
+    /// may not be, and is cut off. What does not fit its question, as in a file that was edited, is passed over.
     ///
     /// # Errors
     /// [`JournalError`].
-    pub fn open(path: &Path, problem: &str) -> Result<Self, JournalError> {
+    pub fn open(path: &Path, problem: &str, fits: impl Fn(&Entry) -> bool) -> Result<Self, JournalError> {
         let failed = |error: io::Error| JournalError::File { path: path.to_owned(), error };
         let text = match std::fs::read(path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
@@ -86,8 +86,10 @@ impl Journal {
             let Some(entry) = line.strip_suffix('\n').and_then(|line| serde_json::from_str::<Entry>(line).ok()) else {
                 break;
             };
-            known.entry(key(&entry.question)).or_insert(entry.answer);
             whole += line.len();
+            if fits(&entry) {
+                known.entry(key(&entry.question)).or_insert(entry.answer);
+            }
         }
         let mut file = OpenOptions::new().create(true).append(true).open(path).map_err(failed)?;
         file.set_len(whole as u64).map_err(failed)?;

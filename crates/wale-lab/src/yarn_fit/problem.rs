@@ -68,6 +68,17 @@ impl Question {
     pub fn of(at: [f64; P], samples: usize, slopes: bool) -> Self {
         Self { fabric: 0, rest: at, at, samples, slopes }
     }
+
+    /// Whether an answer has all that this question asks about one of the problems.
+    #[must_use]
+    pub fn is_answered_by(&self, answer: Option<&Evaluation>, problems: &[YarnProblem]) -> bool {
+        let Some(problem) = problems.get(self.fabric) else { return false };
+        answer.is_none_or(|answer| {
+            answer.stretch.len() == problem.targets.len()
+                && answer.stretch.iter().all(|curve| curve.len() == self.samples)
+                && answer.bending.len() == problem.bending.len()
+        })
+    }
 }
 
 /// What the tile does.
@@ -101,6 +112,20 @@ pub trait Answers: Sync {
 }
 
 impl YarnProblem {
+    /// What keeps it from being fitted, if anything does: one that was read from a file may have been edited.
+    #[must_use]
+    pub fn fault(&self) -> Option<&'static str> {
+        let rising = |target: &Target| {
+            let before = std::iter::once(0.0).chain(target.stretches());
+            !target.points.is_empty() && before.zip(target.stretches()).all(|(a, b)| a < b && b.is_finite())
+        };
+        if self.targets.is_empty() || !self.targets.iter().all(rising) {
+            return Some("its targets need points of rising stretch");
+        }
+        let ordered = self.space.bounds.iter().all(|[low, high]| low <= high && low.is_finite() && high.is_finite());
+        (!ordered).then_some("a lower bound is above its upper one")
+    }
+
     /// The tile with the rest shapes of some numbers; `None` if there are none.
     #[must_use]
     pub fn rested(&self, parameters: &[f64; P]) -> Option<YarnTile> {

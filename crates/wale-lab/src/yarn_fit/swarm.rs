@@ -128,6 +128,11 @@ pub fn fit_locally<A: Answers>(
     let free = free(&problems[0]);
     let [evaluations, samples] = settings.local;
     let unknown: Vec<usize> = (0..P).filter(|&k| free[k]).collect();
+    if unknown.is_empty() {
+        // Nothing is to be found; COBYLA cannot be given no unknown.
+        let cost = cost(problems, answers, &from, samples, progress)?;
+        return Ok(Found { coordinates: problems[0].space.at_parts(from), cost, least_squares: None });
+    }
     let whole = |x: &[f64]| {
         let mut place = from;
         unknown.iter().zip(x).for_each(|(&k, &x)| place[k] = x.clamp(0.0, 1.0));

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use wale::geometry::Curve;
 
-use super::tile::YarnTile;
+use super::tile::{MOST_VERTICES, TileFault, YarnTile};
 
 /// Points that the drawn curve has for each of the tile's.
 const PIECES: usize = 4;
@@ -11,12 +11,16 @@ const PIECES: usize = 4;
 const COLORS: [[u8; 3]; 2] = [[217, 201, 168], [63, 111, 143]];
 
 /// Every yarn of so many repeats beside each other, each from where it comes in to where it goes out; warps have a colour of their own.
+/// Of a tile of many vertices there are fewer repeats, at least one.
 ///
-/// # Panics
+/// # Errors
 /// As [`YarnTile::repeated`].
-#[must_use]
-pub fn drawn_curves(tile: &YarnTile, repeats: [usize; 2]) -> Vec<Curve> {
-    let patch = tile.repeated(repeats);
+pub fn drawn_curves(tile: &YarnTile, mut repeats: [usize; 2]) -> Result<Vec<Curve>, TileFault> {
+    while repeats != [1, 1] && tile.vertex_count() * repeats[0] * repeats[1] > MOST_VERTICES {
+        let more = usize::from(repeats[1] > repeats[0]);
+        repeats[more] -= 1;
+    }
+    let patch = tile.repeated(repeats)?;
     let n = patch.vertex_count();
     let (mut next, mut shift) = (vec![0usize; n], vec![[0i32; 2]; n]);
     for edge in patch.edges() {
@@ -47,7 +51,7 @@ pub fn drawn_curves(tile: &YarnTile, repeats: [usize; 2]) -> Vec<Curve> {
             out.push(smooth(&points, tile.radius(), color));
         }
     }
-    out
+    Ok(out)
 }
 
 /// A curve through points, by cubics whose slopes are those of the points beside.
@@ -85,7 +89,7 @@ mod tests {
             let curves = drawn_curves(&tile, [3, 2]);
             let pieces: usize = curves.iter().map(|curve| (curve.points.len() - 1) / PIECES + 1).sum();
             assert_eq!(pieces, 6 * tile.vertex_count());
-            for vertex in tile.repeated([3, 2]).vertices() {
+            for vertex in tile.repeated([3, 2]).unwrap().vertices() {
                 let at = DVec3::from_array(*vertex);
                 assert!(curves.iter().any(|curve| curve.points.iter().any(|p| p.distance(at) < 1e-12)), "{at}");
             }

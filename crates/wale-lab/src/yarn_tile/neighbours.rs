@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn the_grid_finds_what_is_near_and_each_pair_once() {
-        for tile in [basket(), stockinette(), stockinette().repeated([2, 1])] {
+        for tile in [basket(), stockinette(), stockinette().repeated([2, 1]).unwrap()] {
             let followers = Followers::new(&tile, std::f64::consts::PI * tile.radius);
             for plane in [[[1.0, 0.0], [0.0, 1.0]], [[1.6, 0.4], [-0.3, 0.7]], [[0.5, 0.0], [0.9, 1.1]]] {
                 let deformation = CoarseDeformation { plane, ..CoarseDeformation::REST };

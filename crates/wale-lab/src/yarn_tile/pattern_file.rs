@@ -222,7 +222,7 @@ impl Reader<'_> {
                 TileFault::Rest { what: "torsion", .. } => *line,
                 TileFault::Rest { index, .. } => of_curvatures.rows[*index].0,
                 TileFault::Fork { .. } => of_edges.header,
-                TileFault::Size { .. } | TileFault::Count { .. } => *line,
+                TileFault::Size { .. } | TileFault::Thick { .. } | TileFault::Count { .. } => *line,
             };
             self.error(line, "the numbers", format!("{fault}"), "mend the line")
         })

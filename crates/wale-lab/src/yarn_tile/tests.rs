@@ -70,7 +70,7 @@ fn doubling_a_tile_changes_neither_energy_nor_stress() {
         let deformation = CoarseDeformation::stretched(0.4, 0.05, 0.02);
         let once = rest(&mut TileSolver::new(&tile, &material, settings()).unwrap(), &deformation);
         for counts in [[2, 1], [1, 2], [2, 2]] {
-            let mut solver = TileSolver::new(&tile.repeated(counts), &material, settings()).unwrap();
+            let mut solver = TileSolver::new(&tile.repeated(counts).unwrap(), &material, settings()).unwrap();
             let twice = rest(&mut solver, &deformation);
             assert!((twice.energy_density / once.energy_density - 1.0).abs() < 1e-6, "{counts:?}");
             assert!((twice.stress.stretch / once.stress.stretch - 1.0).abs() < 1e-6, "{counts:?}");

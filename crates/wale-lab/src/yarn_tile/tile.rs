@@ -48,6 +48,14 @@ pub enum TileFault {
         /// What it is.
         value: f64,
     },
+    /// The yarn is thicker than its tile is long.
+    #[error("a yarn of radius {radius} is thicker than its repeat is long ({} by {}); are all of them in one unit?", periods[0], periods[1])]
+    Thick {
+        /// Radius \[m\].
+        radius: f64,
+        /// Periods \[m\].
+        periods: [f64; 2],
+    },
     /// There are no vertices, or more than `MOST_VERTICES`, or lists of different lengths.
     #[error("{found} {what} where {wanted} are asked for")]
     Count {
@@ -110,6 +118,9 @@ impl YarnTile {
             if !positive(value) {
                 return Err(TileFault::Size { what, value });
             }
+        }
+        if 2.0 * radius > periods[0] + periods[1] {
+            return Err(TileFault::Thick { radius, periods });
         }
         let n = vertices.len();
         if n == 0 || n > MOST_VERTICES {
@@ -235,12 +246,15 @@ impl YarnTile {
 
     /// Several tiles beside each other as one.
     ///
-    /// # Panics
-    /// If a count is zero or the tile becomes too large.
-    #[must_use]
-    pub fn repeated(&self, counts: [usize; 2]) -> Self {
+    /// # Errors
+    /// [`TileFault::Count`] if a count is zero or the tile becomes too large; [`TileFault::Edge`] if an edge is so short that rounding
+    /// takes its length away beside others.
+    pub fn repeated(&self, counts: [usize; 2]) -> Result<Self, TileFault> {
         let n = self.vertices.len();
-        assert!(counts[0] > 0 && counts[1] > 0 && n * counts[0] * counts[1] <= MOST_VERTICES);
+        let found = n.saturating_mul(counts[0]).saturating_mul(counts[1]);
+        if !(1..=MOST_VERTICES).contains(&found) {
+            return Err(TileFault::Count { what: "vertices", found, wanted: found.clamp(1, MOST_VERTICES) });
+        }
         let counts_signed = counts.map(|count| count as i32);
         let (mut vertices, mut edges) = (Vec::new(), Vec::new());
         for j in 0..counts_signed[1] {
@@ -258,8 +272,8 @@ impl YarnTile {
         }
         let copies = counts[0] * counts[1];
         let periods = [0, 1].map(|axis| self.periods[axis] * counts[axis] as f64);
-        let tile = Self::new(periods, self.radius, vertices, edges).expect("copies of a tile make a tile");
-        Self { rest: self.rest.repeated(copies), ..tile }
+        let tile = Self::new(periods, self.radius, vertices, edges)?;
+        Ok(Self { rest: self.rest.repeated(copies), ..tile })
     }
 }
 
@@ -333,9 +347,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_yarn_thicker_than_its_repeat_is_long_is_refused() {
+        let tile = straight(8);
+        let periods = tile.periods();
+        let radius = 0.6 * (periods[0] + periods[1]);
+        let fault = YarnTile::new(periods, radius, tile.vertices().to_vec(), tile.edges().to_vec()).unwrap_err();
+        assert!(matches!(fault, TileFault::Thick { .. }) && fault.to_string().contains("one unit"), "{fault}");
+        assert!(matches!(tile.repeated([0, 2]), Err(TileFault::Count { .. })));
+        assert!(matches!(tile.repeated([usize::MAX, 2]), Err(TileFault::Count { .. })));
+    }
+
+    #[test]
     fn a_doubled_tile_has_the_same_lengths_and_more_yarns_across() {
         let tile = basket();
-        let doubled = tile.repeated([2, 3]);
+        let doubled = tile.repeated([2, 3]).unwrap();
         assert_eq!(doubled.vertex_count(), 6 * tile.vertex_count());
         assert!((doubled.area() - 6.0 * tile.area()).abs() < 1e-12 * tile.area());
         // Two warp and two weft yarns: twice as many side by side, three times above each other.

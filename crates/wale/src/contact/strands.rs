@@ -20,6 +20,10 @@ const NOTHING: f64 = 0.02;
 /// How much further than needed strands are looked for, and the most that their speed adds to it, in yarn radii.
 const MARGIN: f64 = 0.7;
 const MOST_MARGIN: f64 = 4.0;
+/// Lengths of a mean strand above which one is looked for in pieces: a single long float would make every strand near every other.
+const LONG: f64 = 4.0;
+/// Most pieces of a strand.
+const MOST_PIECES: f64 = 4096.0;
 /// Pairs of a part.
 const PART: usize = 8192;
 /// How far the yarns of a stitch contact lie aside of its axis, in yarn radii: they are led around each other.
@@ -61,6 +65,10 @@ struct Strand {
 }
 
 impl Strand {
+    fn layout_length(&self) -> f64 {
+        self.layout[0].distance(self.layout[1])
+    }
+
     /// Where its ends lie beside their nodes, which are at `ends` and have these normals.
     fn offsets(&self, ends: [DVec3; 2], normals: [DVec3; 2]) -> [DVec3; 2] {
         let left = (normals[0] + normals[1]).cross(ends[1] - ends[0]).normalize_or_zero();
@@ -73,7 +81,11 @@ impl Strand {
 #[derive(Clone, Debug, Default)]
 pub struct Strands {
     strands: Vec<Strand>,
-    middles: Vec<DVec3>,
+    /// Length above which a strand is looked for in pieces \[m\].
+    long: f64,
+    /// The strand of each piece, and its middle.
+    pieces: Vec<u32>,
+    places: Vec<DVec3>,
     /// For each node the nodes next to it along its yarns, and where they are in the layout, along two directions that make
     /// a right-handed frame with the front.
     around: Vec<(u32, [f64; 2])>,
@@ -81,6 +93,7 @@ pub struct Strands {
     fits: Vec<(DVec3, f64)>,
     normals: Vec<DVec3>,
     nearby: Nearby,
+    pairs: Vec<[u32; 2]>,
     /// What was found by parts of the pairs, and all of it.
     parts: Vec<Vec<NearStrands>>,
     found: Vec<NearStrands>,
@@ -139,12 +152,15 @@ impl Strands {
         });
         let start = |node: u32| pairs.partition_point(|(of, _)| of.0 < node) as u32;
         Self {
-            middles: strands.iter().map(|strand| 0.5 * (strand.layout[0] + strand.layout[1])).collect(),
+            long: (LONG * strands.iter().map(Strand::layout_length).sum::<f64>() / strands.len() as f64).max(1e-300),
+            pieces: Vec::new(),
+            places: Vec::new(),
             around: around.collect(),
             around_start: (0..=network.node_count() as u32).map(start).collect(),
             fits: Vec::new(),
             normals: Vec::new(),
             nearby: Nearby::default(),
+            pairs: Vec::new(),
             parts: Vec::new(),
             found: Vec::new(),
             strands,
@@ -168,20 +184,8 @@ impl Strands {
         grown: f64,
     ) -> &[NearStrands] {
         self.find_normals(&at);
+        self.find_pairs(&at);
         let (strands, normals) = (&self.strands, &self.normals);
-        let ends = |index: usize| strands[index].nodes.map(|node| at(node as usize));
-        let middle = |index: usize| {
-            let [a, b] = ends(index);
-            0.5 * (a + b)
-        };
-        let size = |index: usize| {
-            let [a, b] = ends(index);
-            a.distance(b)
-        };
-        let longest = (0..strands.len()).into_par_iter().map(size).reduce(|| 0.0, f64::max);
-        let thickest = strands.iter().map(|strand| strand.radius).fold(0.0, f64::max);
-        let reach = longest + (2.0 * BEGINS + 2.0 + MOST_MARGIN) * thickest;
-        let pairs = self.nearby.find(middle, &self.middles, reach, 0.0);
         let near = |pair: &[u32; 2]| {
             let [a, b] = pair.map(|index| &strands[index as usize]);
             if a.contacts.iter().any(|contact| b.contacts.contains(contact)) {
@@ -217,14 +221,41 @@ impl Strands {
             let distance = distance.max(grown * GROWS_TO * touching);
             Some(NearStrands { nodes, offsets: offsets.map(|x| x.to_array()), distance })
         };
-        self.parts.resize_with(pairs.len().div_ceil(PART), Vec::new);
-        self.parts.par_iter_mut().zip(pairs.par_chunks(PART)).for_each(|(part, pairs)| {
+        self.parts.resize_with(self.pairs.len().div_ceil(PART), Vec::new);
+        self.parts.par_iter_mut().zip(self.pairs.par_chunks(PART)).for_each(|(part, pairs)| {
             part.clear();
             part.extend(pairs.iter().filter_map(near));
         });
         self.found.clear();
         self.found.extend(self.parts.iter().flatten());
         &self.found
+    }
+
+    /// Pairs of strands that may be near enough to meet within a step, in order of the first, then of the second.
+    fn find_pairs(&mut self, at: &(impl Fn(usize) -> DVec3 + Sync)) {
+        let (mut longest, mut thickest): (f64, f64) = (0.0, 0.0);
+        self.pieces.clear();
+        self.places.clear();
+        for (index, strand) in self.strands.iter().enumerate() {
+            let [a, b] = strand.nodes.map(|node| at(node as usize));
+            let length = a.distance(b);
+            let count = (length / self.long).ceil().clamp(1.0, MOST_PIECES);
+            longest = longest.max(length / count);
+            thickest = thickest.max(strand.radius);
+            for piece in 0..count as u32 {
+                self.pieces.push(index as u32);
+                self.places.push(a.lerp(b, (f64::from(piece) + 0.5) / count));
+            }
+        }
+        let reach = longest + (2.0 * BEGINS + 2.0 + MOST_MARGIN) * thickest;
+        let near = self.nearby.find(|piece| self.places[piece], &self.places, reach, 0.0);
+        self.pairs.clear();
+        self.pairs.extend(near.iter().map(|pair| pair.map(|piece| self.pieces[piece as usize])));
+        if self.pieces.len() > self.strands.len() {
+            self.pairs.retain(|[a, b]| a != b);
+            self.pairs.sort_unstable();
+            self.pairs.dedup();
+        }
     }
 
     /// Normals of all nodes to the front of the fabric, as pictures of yarns have them.

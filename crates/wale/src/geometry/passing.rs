@@ -13,6 +13,9 @@ use rayon::prelude::*;
 use super::Curve;
 use crate::model::Network;
 
+/// Most cells of the search that a piece is put into on its way.
+const MOST_CELLS: f64 = 512.0;
+
 /// Crossings of pairs of yarn segments, each named by the pass before it.
 #[derive(Clone, Debug, Default)]
 pub struct Passages {
@@ -57,8 +60,14 @@ impl Passages {
         let reach = pieces.iter().map(|piece| size(&bounds(piece))).sum::<f64>() / pieces.len().max(1) as f64;
         let cell_of = |x: DVec3| (x / reach.max(1e-9)).floor().as_i64vec3().to_array();
         let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        // What was torn across the fabric is held against everything: it would be in nearly every cell.
+        let mut torn = Vec::new();
         for (index, piece) in pieces.iter().enumerate() {
             let [low, high] = bounds(piece).map(cell_of);
+            if (0..3).map(|k| (high[k] - low[k] + 1) as f64).product::<f64>() > MOST_CELLS {
+                torn.push(index as u32);
+                continue;
+            }
             for x in low[0]..=high[0] {
                 for y in low[1]..=high[1] {
                     for z in low[2]..=high[2] {
@@ -67,27 +76,31 @@ impl Passages {
                 }
             }
         }
-        let found: Vec<([u32; 2], i32)> = cells
+        // Of the cells that both are in, one counts.
+        let cross = |a: u32, b: u32, within: Option<[i64; 3]>| {
+            let (a, b) = (&pieces[a as usize], &pieces[b as usize]);
+            let near = a.place.0 == b.place.0 && a.place.1.abs_diff(b.place.1) <= 1;
+            let ([la, ha], [lb, hb]) = (bounds(a), bounds(b));
+            let apart = la.cmpgt(hb).any() || lb.cmpgt(ha).any();
+            let elsewhere = within.is_some_and(|cell| cell_of(la.max(lb)) != cell);
+            if near || apart || elsewhere || self.joined(a.segment, b.segment) {
+                return None;
+            }
+            let sign = crossing(a, b);
+            let pair = [a.segment.min(b.segment), a.segment.max(b.segment)];
+            (sign != 0).then_some((pair, sign))
+        };
+        let mut found: Vec<([u32; 2], i32)> = cells
             .par_iter()
             .flat_map_iter(|(cell, list)| {
-                let (pieces, this) = (&pieces, &*self);
-                list.iter().enumerate().flat_map(move |(k, &a)| {
-                    list[k + 1..].iter().filter_map(move |&b| {
-                        let (a, b) = (&pieces[a as usize], &pieces[b as usize]);
-                        let near = a.place.0 == b.place.0 && a.place.1.abs_diff(b.place.1) <= 1;
-                        let ([la, ha], [lb, hb]) = (bounds(a), bounds(b));
-                        let apart = la.cmpgt(hb).any() || lb.cmpgt(ha).any();
-                        // Of the cells that both are in, one counts.
-                        if near || apart || cell_of(la.max(lb)) != *cell || this.joined(a.segment, b.segment) {
-                            return None;
-                        }
-                        let sign = crossing(a, b);
-                        let pair = [a.segment.min(b.segment), a.segment.max(b.segment)];
-                        (sign != 0).then_some((pair, sign))
-                    })
-                })
+                let pairs = list.iter().enumerate().flat_map(|(k, &a)| list[k + 1..].iter().map(move |&b| (a, b)));
+                pairs.filter_map(|(a, b)| cross(a, b, Some(*cell)))
             })
             .collect();
+        for &a in &torn {
+            let others = (0..pieces.len() as u32).filter(|&b| b != a && (b < a || torn.binary_search(&b).is_err()));
+            found.extend(others.filter_map(|b| cross(a, b, None)));
+        }
         self.crossings += found.len();
         for (pair, sign) in found {
             *self.net.entry(pair).or_default() += sign;
@@ -222,6 +235,18 @@ mod tests {
         let [above, below] = [DVec3::new(9.0, 0.0, 0.5), DVec3::new(9.0, 0.0, -0.5)];
         let way = [[DVec3::Z * 0.5, above], [above, below], [below, DVec3::Z * -0.5]];
         assert_eq!(passed(&way), (0, 0));
+    }
+
+    #[test]
+    fn a_yarn_that_is_torn_across_the_others_is_held_against_all_of_them() {
+        // Forty yarns beside each other that hardly move, and one that is pulled far through them.
+        let still: Vec<Curve> =
+            (0..40).map(|k| yarn(DVec3::new(0.13, f64::from(k) + 0.5, 0.0), DVec3::X, 11 * k)).collect();
+        let torn = |z: f64| yarn(DVec3::new(0.4, 20.0, z), DVec3::new(0.003, 3.9, 0.02), 500);
+        let frames = [30.0, -30.0].map(|z| still.iter().cloned().chain([torn(z)]).collect::<Vec<_>>());
+        let mut passages = Passages::default();
+        passages.follow(&frames[0], &frames[1]);
+        assert_eq!((passages.crossings, passages.pairs().count()), (39, 39));
     }
 
     #[test]

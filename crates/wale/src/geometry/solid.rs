@@ -58,6 +58,12 @@ impl Solid {
         self
     }
 
+    /// How far a point is above the solid's own `z = 0`: outside a plane if it is positive \[m\].
+    #[must_use]
+    pub fn height(&self, at: DVec3) -> f64 {
+        (at - self.position).dot(self.rotation * DVec3::Z)
+    }
+
     /// Corners of a box around the solid; none for a plane, which has no end.
     #[must_use]
     pub fn extent_points(&self) -> Vec<DVec3> {

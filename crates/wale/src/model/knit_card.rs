@@ -139,8 +139,8 @@ impl Default for LoopProportions {
 
 impl LoopProportions {
     /// Loops whose yarns lie beside each other at their contacts, fitted to measured swatches of eleven patterns. Relative to
-    /// stockinette their relaxed widths and heights come within 0.02 (root mean square of the logarithms), those of eight others
-    /// within 0.08 and 0.06; the example `knit_swatches` prints the tables.
+    /// stockinette their relaxed widths and heights come within 0.02 and 0.03 (root mean square of the logarithms), those of fifteen
+    /// others within 0.07 and 0.05; the example `knit_swatches` prints the tables.
     #[must_use]
     pub fn thick() -> Self {
         Self {

@@ -22,6 +22,6 @@ pub use network::{
 pub use plan::{
     Drive, ExportFormat, Grip, LinearSolver, Obstacle, Output, Pictures, Placement, Plan, Shape, Simulation,
 };
-pub use selection::{Edge, Selection};
+pub use selection::{Edge, Selection, WhichEnd};
 pub use woven_card::{WovenCard, WovenGeometry};
 pub use yarn_card::{YarnCard, Yarns};

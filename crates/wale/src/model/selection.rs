@@ -42,8 +42,8 @@ pub enum Selection {
         yarn: u8,
         /// Which length of it, counted from 0; all if `None`.
         length: Option<u32>,
-        /// The last node rather than the first.
-        last: bool,
+        /// Which of its ends.
+        end: WhichEnd,
     },
     /// The nodes whose initial world position lies in a box.
     Region {
@@ -52,6 +52,18 @@ pub enum Selection {
         /// Largest corner \[m\].
         high: DVec3,
     },
+}
+
+/// Ends of a yarn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WhichEnd {
+    /// Where it was begun.
+    First,
+    /// Where it was cut off.
+    Last,
+    /// Both of these.
+    Both,
 }
 
 /// An edge of a fabric as seen from the front.
@@ -82,13 +94,17 @@ impl Selection {
                 .filter(|&i| positions[i].cmpge(*low).all() && positions[i].cmple(*high).all())
                 .map(NodeId::new)
                 .collect(),
-            Self::YarnEnd { yarn, length, last } => {
+            Self::YarnEnd { yarn, length, end } => {
                 let of_kind = (0..network.yarn_count()).filter(|&y| network.yarn_kind[y] == *yarn);
                 let chosen = of_kind.enumerate().filter(|(k, _)| length.is_none_or(|length| length as usize == *k));
                 let passes =
                     chosen.map(|(_, y)| network.yarn_passes(YarnId::new(y))).filter(|passes| !passes.is_empty());
-                let ends: BTreeSet<NodeId> =
-                    passes.map(|passes| network.pass_node[if *last { passes.end - 1 } else { passes.start }]).collect();
+                let places = passes.flat_map(|passes| match end {
+                    WhichEnd::First => vec![passes.start],
+                    WhichEnd::Last => vec![passes.end - 1],
+                    WhichEnd::Both => vec![passes.start, passes.end - 1],
+                });
+                let ends: BTreeSet<NodeId> = places.map(|pass| network.pass_node[pass]).collect();
                 ends.into_iter().collect()
             }
             Self::Edge { edge, depth } => {
@@ -186,8 +202,9 @@ mod tests {
         let region = Selection::Region { low: DVec3::new(0.5, -1.0, -1.0), high: DVec3::new(2.5, 1.0, 1.0) };
         assert_eq!(picked(&region), [1, 2]);
         assert_eq!(picked(&Selection::All).len(), 6);
-        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: None, last: false }), [0]);
-        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: Some(0), last: true }), [5]);
-        assert!(picked(&Selection::YarnEnd { yarn: 1, length: None, last: true }).is_empty());
+        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: None, end: WhichEnd::First }), [0]);
+        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: Some(0), end: WhichEnd::Last }), [5]);
+        assert_eq!(picked(&Selection::YarnEnd { yarn: 0, length: None, end: WhichEnd::Both }), [0, 5]);
+        assert!(picked(&Selection::YarnEnd { yarn: 1, length: None, end: WhichEnd::Last }).is_empty());
     }
 }

@@ -17,7 +17,7 @@ pub struct YarnCard {
     pub friction_coefficient: f64,
     /// Mass damping `α` \[1/s\].
     pub mass_damping: f64,
-    /// Stiffness damping `β` \[s\], acting on the rates of stretch, bend and wrap.
+    /// Stiffness damping `β` \[s\], acting on the rates of bend and wrap.
     pub stiffness_damping: f64,
     /// Whether the ends of a knitted yarn are loose, so that it can be pulled out of its fabric; tied to it if not. The
     /// threads of a weave are always loose.

@@ -20,16 +20,12 @@ impl Chart {
         if rows > self.row_count() && first != last {
             return Err(ChartError::Shaped { first, last });
         }
-        let cells = self.cells();
+        let (cells, grid) = (self.cells(), self.is_grid());
         let cut = |r: usize| -> Vec<(Stitch, u8)> {
             let source = &cells[r % cells.len()];
-            if self.is_grid() {
-                source.iter().copied().cycle().take(columns).collect()
-            } else {
-                source.repeat(columns / first)
-            }
+            if grid { source.iter().copied().cycle().take(columns).collect() } else { source.repeat(columns / first) }
         };
-        if !self.is_grid() && !columns.is_multiple_of(first) {
+        if !grid && !columns.is_multiple_of(first) {
             return Err(ChartError::Cut { columns, repeat: first });
         }
         let cut = Self::from_cells((0..rows).map(cut).collect());
@@ -100,17 +96,27 @@ impl Chart {
                 }
             }
         }
-        for start in 0..first {
-            let mut at = Some(start);
-            for _ in 0..=first {
-                at = at.and_then(|place| from[place]);
-            }
-            if at.is_some() {
-                return Err(ChartError::NeverWorked { column: start });
-            }
+        match (0..first).find(|&start| comes_round(&mut from, start)) {
+            Some(column) => Err(ChartError::NeverWorked { column }),
+            None => Ok(()),
         }
-        Ok(())
     }
+}
+
+/// Whether the way back from a place never ends. A way that ends is forgotten but for its end, so that all of them are walked once.
+fn comes_round(from: &mut [Option<usize>], start: usize) -> bool {
+    let mut at = start;
+    for _ in 0..=from.len() {
+        let Some(before) = from[at] else {
+            let mut at = start;
+            while let Some(before) = from[at].take() {
+                at = before;
+            }
+            return false;
+        };
+        at = before;
+    }
+    true
 }
 
 /// Places on the needle that a row leaves.

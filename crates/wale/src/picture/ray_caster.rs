@@ -19,6 +19,7 @@ use super::{
     tube::{TubeHit, Tubes},
     yarn_colors::point_colors,
 };
+use crate::geometry::SolidShape;
 
 /// Half the angle that the key light spans, as a tangent.
 const KEY_SPREAD: f32 = 0.07;
@@ -102,12 +103,15 @@ impl<'a> Stage<'a> {
         } else {
             Tubes::default()
         };
+        // A plate that the eye looks through neither shows nor shades.
+        let eye = camera.target + camera.distance * camera.back;
+        let solids = subject.solids.iter().filter(|s| s.shape != SolidShape::Plane || s.height(eye) > 0.0);
         Self {
             camera,
             settings,
             hair,
             tubes: Tubes::new(subject.curves, colors, camera.target),
-            solids: subject.solids.iter().map(|s| PlacedSolid::new(s, camera.target)).collect(),
+            solids: solids.map(|s| PlacedSolid::new(s, camera.target)).collect(),
             ground,
             background,
             plain: shoulder(background),
@@ -285,7 +289,7 @@ impl<'a> Stage<'a> {
 mod tests {
     use super::*;
     use crate::{
-        geometry::{Curve, Solid, SolidShape},
+        geometry::{Curve, Solid},
         picture::{Projection, View},
     };
 
@@ -332,6 +336,18 @@ mod tests {
         let plain = |settings: &Settings| picture(settings).pixels.iter().filter(|p| **p == background).count();
         let (with, without) = (plain(&small()), plain(&Settings { ground: None, ..small() }));
         assert!(without > with + 200, "{without} {with}");
+    }
+
+    #[test]
+    fn a_plate_in_front_of_everything_is_looked_through() {
+        let (curves, _) = subject();
+        let bare = Subject { curves: &curves, scalars: None, solids: &[] };
+        let (points, radius) = bare.extent_points();
+        let camera = Camera::framing(View::Front, Projection::Orthographic, &points, radius, 4.0 / 3.0, 0.1);
+        let glass = Solid::new(SolidShape::Plane, camera.target + 0.02 * camera.back).pointing(-camera.back);
+        let wall = Solid::new(SolidShape::Plane, camera.target - 0.02 * camera.back).pointing(camera.back);
+        let seen = |solids: &[Solid]| render(&Subject { solids, ..bare }, &camera, &small());
+        assert!(seen(&[glass]) == seen(&[]) && seen(&[wall]) != seen(&[]));
     }
 
     #[test]

@@ -7,7 +7,7 @@ use glam::{DQuat, DVec3};
 use super::schema::{
     Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, ContactModel, FabricText, FirstRow, Gravity,
     GripText, KeyText, MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
-    SelvedgeText, SimulationText, SphereText, WeaveText, WhichEnd, Worked, YarnEndText, YarnText,
+    SelvedgeText, SimulationText, SphereText, WeaveText, Worked, YarnEndText, YarnText,
 };
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
@@ -336,11 +336,11 @@ fn select(scene: &Scene, selection: &Selection) -> Written<SelectText> {
             let ends = |range: &std::ops::Range<u32>| [range.start.saturating_add(1), range.end];
             (text.rows, text.columns) = (rows.as_ref().map(ends), columns.as_ref().map(ends));
         }
-        Selection::YarnEnd { yarn, length, last } => {
+        Selection::YarnEnd { yarn, length, end } => {
             text.yarn_end = Some(YarnEndText {
                 yarn: yarn_name(scene, usize::from(*yarn)),
                 number: length.map(|length| length.saturating_add(1)),
-                end: if *last { WhichEnd::Last } else { WhichEnd::First },
+                end: *end,
             });
         }
         Selection::Region { low, high } => {

@@ -2,7 +2,7 @@
 //!
 //! The free end of a yarn that is pulled comes nearer and nearer to the first contact on its way. When almost no yarn is left
 //! between them, the end goes through: the contact of two yarns, with five coordinates, becomes two nodes of three, that of the
-//! yarn that stays and the end of the other [Cirio2017, section 6]. The end's own node is taken for the latter, so that
+//! yarn that stays and the end of the other [Cirio2017, section 5.2.4]. The end's own node is taken for the latter, so that
 //! no node is made or lost, and the pass that was left keeps the arc length of the end, by which it is known as left:
 //! a state says itself which contacts there still are, and so does a frame.
 

@@ -143,6 +143,9 @@ fn matches(values: &[Vec<f64>], curves: &[Curve]) -> bool {
     values.len() == curves.len() && values.iter().zip(curves).all(|(v, c)| v.len() == c.points.len())
 }
 
+/// Most points of a frame, but for one or two a yarn.
+const MOST_POINTS: f64 = 4e6;
+
 /// Checks all curves and decides where the points of each yarn lie.
 fn lay_out(data: &ViewData, settings: &ViewSettings) -> Result<Vec<PackedYarn>, ViewError> {
     let first = data.frames.first().ok_or(ViewError::Nothing)?;
@@ -173,13 +176,16 @@ fn lay_out(data: &ViewData, settings: &ViewSettings) -> Result<Vec<PackedYarn>, 
     if first.curves.is_empty() {
         return Err(ViewError::Nothing);
     }
+    let length = |curve: &Curve| curve.arc_length[curve.arc_length.len() - 1] - curve.arc_length[0];
+    let all: f64 = first.curves.iter().map(|curve| length(curve) / (settings.spacing * curve.radius)).sum();
+    // Points of a fabric of very much yarn lie further apart.
+    let spacing = settings.spacing * (all / MOST_POINTS).max(1.0);
     Ok(first
         .curves
         .iter()
         .map(|curve| {
-            let start = curve.arc_length[0];
-            let length = curve.arc_length[curve.arc_length.len() - 1] - start;
-            let pieces = (length / (settings.spacing * curve.radius)).ceil().clamp(1.0, 1e7) as usize;
+            let (start, length) = (curve.arc_length[0], length(curve));
+            let pieces = (length / (spacing * curve.radius)).ceil().max(1.0) as usize;
             PackedYarn {
                 first: start,
                 spacing: length / pieces as f64,

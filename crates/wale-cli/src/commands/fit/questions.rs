@@ -103,7 +103,7 @@ pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
             continue;
         }
         let one = read::<Told>(&name, index, &text, &fingerprint, |told| &told.problem)?;
-        if !fits(&problems, &one) {
+        if !one.question.is_answered_by(one.answer.as_ref(), &problems) {
             let what =
                 "the answer has not as many points as the question asks for, or is of a fabric that is not there";
             return Err(Failure::new(Code::BadInput, format_args!("{name}:{}: {what}", index + 1)));
@@ -111,7 +111,7 @@ pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
         told.push(one);
     }
     let path = folder.join(ANSWERS);
-    let journal = open(&path, &fingerprint)?;
+    let journal = open(&path, &problems)?;
     let mut new = 0;
     for Told { question, answer, .. } in told {
         let added = journal.add(&Entry { question, answer });
@@ -119,16 +119,6 @@ pub fn tell(folder: &Path, file: &Path) -> Result<(), Failure> {
     }
     note(&format!("{new} new answers, {} in all", journal.len()));
     Ok(())
-}
-
-/// Whether an answer is one to its question.
-fn fits(problems: &[YarnProblem], told: &Told) -> bool {
-    let Some(problem) = problems.get(told.question.fabric) else { return false };
-    told.answer.as_ref().is_none_or(|answer| {
-        answer.stretch.len() == problem.targets.len()
-            && answer.stretch.iter().all(|curve| curve.len() == told.question.samples)
-            && answer.bending.len() == problem.bending.len()
-    })
 }
 
 /// A line of the right problem.

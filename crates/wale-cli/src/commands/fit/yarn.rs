@@ -1,5 +1,6 @@
 //! The fit of one yarn to its fabrics: the problems, the journal of their answers, and how far it has come.
 
+use std::fmt::Display;
 use std::path::Path;
 use std::time::Instant;
 
@@ -9,7 +10,7 @@ use wale_lab::network_fit::{NetworkFit, SceneFitError, fit_scene};
 use wale_lab::shell::of_fabric::ShellFit;
 use wale_lab::yarn_fit::ablation::Ablation;
 use wale_lab::yarn_fit::gradients::GradientSettings;
-use wale_lab::yarn_fit::journal::{Asked, Journal, JournalError, Recorded, Stopped};
+use wale_lab::yarn_fit::journal::{Asked, Entry, Journal, JournalError, Recorded, Stopped};
 use wale_lab::yarn_fit::of_fabric::uniform_targets;
 use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, Question, YarnProblem, fingerprint};
 use wale_lab::yarn_fit::run::{Interruptible, Way, YarnFit, fit_together};
@@ -47,7 +48,7 @@ pub fn prepare(folder: &Path, problems: &[YarnProblem], force: bool) -> Result<(
         std::fs::remove_file(&path).map_err(|error| Failure::io(&path, "remove", error))?;
     }
     // Answers of another problem are refused before theirs is overwritten.
-    open(&path, &fingerprint(problems))?;
+    open(&path, problems)?;
     let text = serde_json::to_string(problems).map_err(|error| Failure::new(Code::Bug, error))?;
     write(&folder.join(PROBLEM), text.as_bytes())
 }
@@ -71,7 +72,7 @@ pub fn way(arguments: &Fit) -> Way {
 /// The questions that a fit asks now, with the problem that they belong to.
 pub fn ask(arguments: &Fit, folder: &Path, problems: &[YarnProblem]) -> Result<Vec<(String, Question)>, Failure> {
     let fingerprint = fingerprint(problems);
-    let journal = open(&folder.join(ANSWERS), &fingerprint)?;
+    let journal = open(&folder.join(ANSWERS), problems)?;
     let asked = Asked::default();
     let silent = |_: &Step| {};
     let answers = Recorded { journal: &journal, by: &asked };
@@ -108,7 +109,7 @@ pub struct Task<'a> {
 impl Task<'_> {
     /// Fits the yarn, from the answers that the folder has: a part for each fabric, none if their tiles could be tested nowhere.
     pub fn fit(&self, signals: &Signals) -> Result<Option<Vec<FittedYarn>>, Failure> {
-        let journal = open(&self.folder.join(ANSWERS), &fingerprint(self.problems))?;
+        let journal = open(&self.folder.join(ANSWERS), self.problems)?;
         let stop = || signals.stop().is_some();
         let here = Here::of(self.problems);
         let answers = Interruptible { by: Recorded { journal: &journal, by: here.clone() }, stop: &stop };
@@ -135,7 +136,7 @@ impl Task<'_> {
 
     /// The answer to one more question.
     pub fn answer(&self, question: &Question) -> Result<Option<Evaluation>, Failure> {
-        let journal = open(&self.folder.join(ANSWERS), &fingerprint(self.problems))?;
+        let journal = open(&self.folder.join(ANSWERS), self.problems)?;
         let answers = Recorded { journal: &journal, by: Here::of(self.problems) };
         answers.answer(question).map_err(|stopped| ended(&stopped, None))
     }
@@ -156,8 +157,9 @@ pub fn fit_contacts(fabric: &FabricFile, shell: &mut ShellFit) -> Option<(Scene,
 }
 
 /// The journal of problems in a folder.
-pub fn open(path: &Path, fingerprint: &str) -> Result<Journal, Failure> {
-    Journal::open(path, fingerprint).map_err(|error| match error {
+pub fn open(path: &Path, problems: &[YarnProblem]) -> Result<Journal, Failure> {
+    let fits = |entry: &Entry| entry.question.is_answered_by(entry.answer.as_ref(), problems);
+    Journal::open(path, &fingerprint(problems), fits).map_err(|error| match error {
         JournalError::File { path, error } => Failure::io(&path, "open", error),
         JournalError::Other { .. } => Failure::new(
             Code::BadInput,
@@ -179,8 +181,12 @@ pub fn problems(folder: &Path) -> Result<Vec<YarnProblem>, Failure> {
         ),
         _ => Failure::io(&path, "read", error),
     })?;
-    serde_json::from_str(&text)
-        .map_err(|error| Failure::new(Code::BadInput, format_args!("{}: {error}", path.display())))
+    let wrong = |error: &dyn Display| Failure::new(Code::BadInput, format_args!("{}: {error}", path.display()));
+    let problems: Vec<YarnProblem> = serde_json::from_str(&text).map_err(|error| wrong(&error))?;
+    match problems.iter().find_map(YarnProblem::fault) {
+        Some(fault) => Err(wrong(&fault)),
+        None => Ok(problems),
+    }
 }
 
 fn ended(stopped: &Stopped, signal: Option<Code>) -> Failure {

@@ -44,7 +44,7 @@ impl Needle {
             _ => return None,
         };
         let index: i32 = index.parse().ok()?;
-        (index.abs() <= FARTHEST_NEEDLE).then_some(Self { bed, index })
+        (-FARTHEST_NEEDLE..=FARTHEST_NEEDLE).contains(&index).then_some(Self { bed, index })
     }
 
     /// Where it stands, in needles of the front bed.

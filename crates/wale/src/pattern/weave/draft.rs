@@ -140,8 +140,8 @@ impl Draft {
     /// If the repeat is too large, or `step` shares a divisor with `size` or is next to it, so that no satin comes out.
     pub fn satin(size: usize, step: usize) -> Result<Self, DraftError> {
         Self::check_size(size as u64, size as u64)?;
-        let divides = (2..=step).any(|d| size.is_multiple_of(d) && step.is_multiple_of(d));
-        if size < 5 || step < 2 || step + 2 > size || divides {
+        let divides = || (2..=step).any(|d| size.is_multiple_of(d) && step.is_multiple_of(d));
+        if size < 5 || step < 2 || step > size - 2 || divides() {
             return Err(DraftError::Empty);
         }
         Ok(Self::sound(size, size, |end, pick| end * step % size != pick))

@@ -19,13 +19,19 @@ pub fn named_weave(name: &str) -> Option<Draft> {
     match (kind, numbers?.as_slice()) {
         ("plain" | "tabby", []) => Some(Draft::plain()),
         ("twill", [over, under]) => Draft::twill(*over, *under).ok(),
-        ("satin", &[size]) => (2..size).find_map(|step| Draft::satin(size, step).ok()),
+        ("satin", &[size]) => satin(size),
         ("satin", &[size, step]) => Draft::satin(size, step).ok(),
-        ("sateen", &[size]) => (2..size).find_map(|step| Draft::satin(size, step).ok()).map(|satin| satin.other_side()),
+        ("sateen", &[size]) => satin(size).map(|satin| satin.other_side()),
         ("basket" | "hopsack", &[n]) => Draft::basket(n, n).ok(),
         ("basket" | "hopsack" | "rib", &[ends, picks]) => Draft::basket(ends, picks).ok(),
         _ => None,
     }
+}
+
+/// The satin of the smallest step that makes one.
+fn satin(size: usize) -> Option<Draft> {
+    Draft::check_size(size as u64, size as u64).ok()?;
+    (2..size).find_map(|step| Draft::satin(size, step).ok())
 }
 
 #[cfg(test)]
@@ -42,6 +48,8 @@ mod tests {
         assert_eq!(named_weave("sateen 5").unwrap().longest_floats(), [4, 4]);
         for wrong in
             ["", "satin 4", "satin 999999", "twill 2", "twill 0/1", "plain 3", "leno", "twill 18446744073709551615/1"]
+                .into_iter()
+                .chain(["satin 18446744073709551615", "satin 5 by 18446744073709551614", "sateen 99999999999999"])
         {
             assert_eq!(named_weave(wrong), None, "{wrong}");
         }

@@ -6,7 +6,7 @@ use super::{exactly_one, rotation, si, unit, vector};
 use crate::model::motion::Key;
 use crate::model::{Drive, Edge, Grip, Motion, Obstacle, Selection, Shape};
 use crate::scene::error::{Complaint, shortened};
-use crate::scene::schema::{Corner, GripText, MotionText, ObstacleText, SelectText, WhichEnd, YarnEndText};
+use crate::scene::schema::{Corner, GripText, MotionText, ObstacleText, SelectText, YarnEndText};
 
 pub(super) fn obstacles(texts: &[ObstacleText], duration: f64) -> Result<Vec<Obstacle>, Complaint> {
     let names = names(texts.iter().map(|text| text.name.as_deref()), "obstacle")?;
@@ -180,7 +180,7 @@ fn yarn_end(text: &YarnEndText, path: &str, yarns: &[String]) -> Result<Selectio
         return Err(complaint.mend("leave number out for all of them"));
     }
     let length = text.number.map(|number| number - 1);
-    Ok(Selection::YarnEnd { yarn: yarn as u8, length, last: text.end == WhichEnd::Last })
+    Ok(Selection::YarnEnd { yarn: yarn as u8, length, end: text.end })
 }
 
 fn selection(

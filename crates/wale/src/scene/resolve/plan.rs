@@ -10,6 +10,8 @@ use crate::scene::schema::{OutputText, SimulationText};
 
 /// Most frames of a run.
 const MOST_FRAMES: f64 = 1e6;
+/// Shortest that the longest step may be \[s\].
+const LEAST_STEP: f64 = 1e-9;
 /// Most threads.
 const MOST_THREADS: u32 = 1024;
 
@@ -43,6 +45,10 @@ pub(super) fn simulation(text: &SimulationText) -> Result<Simulation, Complaint>
             .class(ErrorClass::ResourceLimit)
             .why(format!("a run has at most {MOST_FRAMES:.0}"))
             .mend("take a shorter duration or a lower frame_rate"));
+    }
+    if simulation.largest_step < LEAST_STEP {
+        return Err(Complaint::new(here("largest_step"), format!("steps of {:?} s at most", simulation.largest_step))
+            .why(format!("with steps shorter than {LEAST_STEP:?} s no run comes to its end")));
     }
     if simulation.smallest_step > simulation.largest_step {
         let key = if text.smallest_step.is_some() { "smallest_step" } else { "largest_step" };

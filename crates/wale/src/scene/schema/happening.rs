@@ -6,7 +6,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{AxisAngle, Direction, ForceVector, LengthVector, SpeedVector};
-use crate::model::Edge;
+use crate::model::{Edge, WhichEnd};
 use crate::scene::dimensions::{Angle, AngularSpeed, Length, Ratio, Time};
 use crate::scene::units::{NotNegative, Positive, Quantity};
 
@@ -219,18 +219,8 @@ pub struct YarnEndText {
     /// Which of the lengths of that yarn, counted from 1 in the order in which they are worked; all if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<u32>,
-    /// "first", where it was begun, or "last".
+    /// "first", where it was begun, "last", or "both".
     pub end: WhichEnd,
-}
-
-/// An end of a yarn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum WhichEnd {
-    /// Where it was begun.
-    First,
-    /// Where it was cut off.
-    Last,
 }
 
 /// Where two edges meet.

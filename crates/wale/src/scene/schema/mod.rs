@@ -19,7 +19,7 @@ pub use chart::{ChartText, FirstRow, Worked};
 pub use fabric::{AxisAngle, ContactModel, FabricText, PaperTable1, Stance};
 pub use happening::{
     Axes, BoxText, CapsuleText, Corner, GripText, KeyText, MotionText, ObstacleText, PlaneText, PullText, RegionText,
-    SelectText, SphereText, TurnText, WhichEnd, YarnEndText,
+    SelectText, SphereText, TurnText, YarnEndText,
 };
 pub use simulation::{Gravity, OutputText, SimulationText};
 pub use weave::{BiasText, SelvedgeText, WeaveText};

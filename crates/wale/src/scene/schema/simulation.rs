@@ -42,8 +42,8 @@ pub struct SimulationText {
     /// Whether parts of the fabric that are not knitted together keep out of each other; true if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub self_contact: Option<bool>,
-    /// Whether neighbouring strands of a knit that share no contact keep out of each other too, as in lace; a step then takes about
-    /// twice as long. false if left out.
+    /// Whether neighbouring strands of a knit that share no contact keep out of each other too, as in lace; a step then takes two
+    /// to three times as long. false if left out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strand_contact: Option<bool>,
     /// Time in which yarn comes from a thousandth of its stretch stiffness to all of it, so that a layout in which it is stretched

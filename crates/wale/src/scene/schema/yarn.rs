@@ -64,7 +64,7 @@ pub struct YarnText {
     /// Damping of all motion, as of thick air.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_damping: Option<Quantity<Rate, NotNegative>>,
-    /// Damping of stretching, bending and wrapping; rigid motion is free of it.
+    /// Damping of bending and wrapping; rigid motion is free of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_damping: Option<Quantity<Time, NotNegative>>,
     /// Whether the ends of a knitted yarn are loose, so that it can be pulled out; tied to the fabric if left out.

@@ -1,6 +1,7 @@
 //! Woven fabrics as scenes say them.
 
 use super::*;
+use crate::model::WhichEnd;
 use crate::pattern::weave::{Draft, Selvedge};
 
 const YARN: &str = "[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.2 mm\"\n";
@@ -39,7 +40,7 @@ fn grips_hold_the_ends_of_yarns() {
          selvedge = \"cut\"\n[[grip]]\nselect = {{ yarn_end = {{ yarn = \"weft\", number = 2, end = \"last\" }} }}\n"
     );
     let scene = read(&weave);
-    assert_eq!(scene.plan.grips[0].nodes, Selection::YarnEnd { yarn: 1, length: Some(1), last: true });
+    assert_eq!(scene.plan.grips[0].nodes, Selection::YarnEnd { yarn: 1, length: Some(1), end: WhichEnd::Last });
     assert_eq!(resolved_again(&scene), scene);
     let network = scene.structure.network(&scene.fabric);
     let held = scene.plan.grips[0].nodes.nodes(&network, &network.position);

@@ -1,16 +1,11 @@
 //! Scenes of the gallery, run to their ends.
-#![allow(dead_code, reason = "not every test that plays scenes asks for everything")]
 
 use std::path::Path;
-use std::sync::Mutex;
 
 use wale::measure::Shape;
 use wale::model::Frame;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start, StepReport};
-
-/// One scene at a time uses all processors.
-static ALONE: Mutex<()> = Mutex::new(());
 
 /// A scene from its first to its last step.
 pub struct Played {
@@ -24,12 +19,6 @@ pub struct Played {
     pub simulation: Simulation,
     /// Speed of the nodes at the end, root mean square \[m/s\].
     pub speed: f64,
-}
-
-/// Runs a scene of the folder `scenes` on all processors, when no other runs so.
-pub fn play(name: &str) -> Played {
-    let _alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    to_its_end(name)
 }
 
 /// Runs a scene of the folder `scenes` on one processor, beside those of other tests: small fabrics gain little from several,

@@ -1,9 +1,8 @@
-//! Every scene of the gallery, run to its end: the numbers that its picture stands for.
+//! Knits that curl, stretch, drape and are lace.
 
-mod play;
-
-use play::{Played, play_beside_others};
 use wale::simulation::Simulation;
+
+use super::play::{Played, play_beside_others};
 
 #[test]
 fn stockinette_curls_and_garter_lies_flat() {

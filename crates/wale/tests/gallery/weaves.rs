@@ -1,10 +1,9 @@
-//! Scenes of woven fabrics and of yarns that are pulled, run to their ends: the numbers that their pictures stand for.
-
-mod play;
+//! Woven fabrics, and yarns that are pulled.
 
 use glam::DVec3;
-use play::{Played, play_beside_others};
 use wale::model::{Network, PassId, YarnId, YarnRole};
+
+use super::play::{Played, play_beside_others};
 
 /// Energy of a kind at the step that ends nearest to a time \[J\].
 fn energy_at(played: &Played, kind: &str, time: f64) -> f64 {
@@ -19,17 +18,26 @@ fn out_of(network: &Network, yarn: usize) -> (usize, usize) {
 }
 
 #[test]
-fn a_frame_that_closes_shears_the_weave_evenly() {
+fn a_frame_that_closes_shears_the_weave_evenly_until_it_locks() {
     let played = play_beside_others("picture-frame.toml");
     let card = played.scene.fabric.woven().unwrap();
-    for time in [0.3_f64, 0.6, 1.0] {
-        let angle = (50.0 * time).to_radians();
-        // 21 × 21 crossings, of which those at the edges have half their neighbours, at corners a quarter.
-        let expected = 400.0 * 0.5 * card.shear_stiffness * card.spacing[0] * angle * angle;
+    // 21 × 21 crossings, of which those at the edges have half their neighbours, at corners a quarter.
+    let unlocked = |time: f64| {
+        let angle = (55.0 * time).to_radians();
+        400.0 * 0.5 * card.shear_stiffness * card.spacing[0] * angle * angle
+    };
+    for time in [0.3, 0.6, 0.9] {
+        let expected = unlocked(time);
         let found = energy_at(&played, "shear", time);
         assert!((found / expected - 1.0).abs() < 0.03, "{time}: {found} {expected}");
         assert!(energy_at(&played, "stretch", time) < 0.01 * found);
     }
+    // Threads of a system lie side by side from 57° on: a frame that turns by 9° more has to do as much again.
+    assert!((55.0..58.0).contains(&card.shear_jamming_angle.to_degrees()));
+    let locked = energy_at(&played, "shear", 1.2) / unlocked(1.2);
+    let force = |time: f64| played.step_at(time).grips[1].force.length();
+    println!("locked: {locked:.2} times the energy, {:.3} N where it was {:.3} N", force(1.2), force(0.9));
+    assert!(locked > 1.3 && force(1.2) > 4.0 * force(0.9));
 }
 
 #[test]
@@ -51,6 +59,7 @@ fn a_strip_on_the_bias_gives_until_its_threads_lie_side_by_side() {
 #[test]
 fn an_end_pulled_through_a_weave_leaves_work_behind() {
     let played = play_beside_others("yarn-pull.toml");
+    // Both ends of the thread.
     let force = |time: f64| played.step_at(time).grips[2].force.y;
     // Sliding, each of fifteen picks holds it with μ λ.
     let card = played.scene.fabric.woven().unwrap();
@@ -59,10 +68,14 @@ fn an_end_pulled_through_a_weave_leaves_work_behind() {
         assert!((force(time) / expected - 1.0).abs() < 0.2, "{time}: {} {expected}", force(time));
     }
     // On the way back it is held the other way; pulled again it comes back to what it was.
-    assert!(force(1.3) < -0.2 * expected && force(2.0) > 0.7 * expected, "{} {}", force(1.3), force(2.0));
+    for (time, sign) in [(1.4, -1.0), (1.5, -1.0), (1.6, -1.0), (2.3, 1.0), (2.4, 1.0)] {
+        assert!((force(time) / (sign * expected) - 1.0).abs() < 0.25, "{time}: {} {expected}", force(time));
+    }
+    // Once around, from where it slides up to where it does so again, takes friction both ways, but for where the fabric gives.
     let work = |time: f64| played.step_at(time).grips[2].work;
-    // From 0.8 s to where it stands at the same place again.
-    assert!(work(1.91) - work(0.8) > 0.0, "{} {}", work(1.91), work(0.8));
+    let (around, most) = (work(2.4) - work(0.8), 2.0 * 2.5e-3 * expected);
+    println!("pulled: {:.2} mN, {:.2} of the work of sliding alone", 1e3 * force(0.8), around / most);
+    assert!((0.6..1.2).contains(&(around / most)), "{around} {most}");
 }
 
 #[test]

@@ -1,53 +1,57 @@
 //! Six fabrics of one yarn dropped on a sphere [Cirio2017, Fig. 12].
 
-mod play;
-
-use play::play;
 use wale::geometry::{CrossingOrder, CurveSettings, Passages, curves, fronts};
 use wale::measure::shadow_area;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start};
 
+use super::play::{Played, play_beside_others};
+
 /// Contacts in order for one that may be seen from its back: where lace curls, the side that a contact shows is not always told from its
 /// neighbours.
 const SEEN_FROM_THE_BACK: usize = 1000;
 
-/// Drops fabrics of the gallery and looks at how they came to rest; returns the parts of their shadows that are left.
+/// Drops fabrics of the gallery, all at once, and looks at how they came to rest; returns the parts of their shadows that are left.
 fn drape<const N: usize>(names: [&str; N]) -> [f64; N] {
     println!("fabric           nodes  shadow lying  shadow draped  part   depth     speed");
-    names.map(|name| {
-        let played = play(&format!("drape/{name}.toml"));
-        let (network, frame, cell) = (played.simulation.network(), played.frame(), played.scene.fabric.cell());
-        let flat = wale::model::Frame { positions: network.position.clone(), ..frame.clone() };
-        let [lying, draped] = [&flat, &frame].map(|frame| shadow_area(network, frame, cell));
-        let heights = frame.positions.iter().map(|x| x.z);
-        let lowest = heights.clone().fold(f64::INFINITY, f64::min);
-        let highest = heights.fold(f64::NEG_INFINITY, f64::max);
-        println!(
-            "{name:<15} {:>6}  {:>8.2} cm²  {:>9.2} cm²  {:>4.2}  {:>5.1} mm  {:>4.1} mm/s",
-            network.node_count(),
-            1e4 * lying,
-            1e4 * draped,
-            draped / lying,
-            1e3 * (highest - lowest),
-            1e3 * played.speed,
-        );
-        // It lies on the sphere, hangs over it, and has come to rest but for slow settling.
-        assert!(played.steps.last().is_some_and(|step| step.contacts > 0), "{name}");
-        assert!((20e-3..46e-3).contains(&highest), "{name}: {highest}");
-        assert!(lowest < 0.0, "{name}: {lowest}");
-        assert!(played.speed < 0.03, "{name}: {}", played.speed);
-        // No yarn passes through another: docs/topics/topology.md tells what lace needs for it.
-        let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
-        let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
-        let mut passages = Passages::of(network);
-        drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
-        assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
-        let order = CrossingOrder::of(network, drawn.last().unwrap(), &fronts(network, &frame));
-        println!("                {} contacts in order, out of order {:?}", order.right, order.wrong);
-        assert!(order.wrong.len() <= order.right / SEEN_FROM_THE_BACK, "{name}: {:?}", order.wrong);
-        draped / lying
+    std::thread::scope(|scope| {
+        let started = names.map(|name| (name, scope.spawn(move || play_beside_others(&format!("drape/{name}.toml")))));
+        started.map(|(name, played)| look(name, &played.join().unwrap()))
     })
+}
+
+/// How a fabric came to rest: the part of its shadow that is left.
+fn look(name: &str, played: &Played) -> f64 {
+    let (network, frame, cell) = (played.simulation.network(), played.frame(), played.scene.fabric.cell());
+    let flat = wale::model::Frame { positions: network.position.clone(), ..frame.clone() };
+    let [lying, draped] = [&flat, &frame].map(|frame| shadow_area(network, frame, cell));
+    let heights = frame.positions.iter().map(|x| x.z);
+    let lowest = heights.clone().fold(f64::INFINITY, f64::min);
+    let highest = heights.fold(f64::NEG_INFINITY, f64::max);
+    println!(
+        "{name:<15} {:>6}  {:>8.2} cm²  {:>9.2} cm²  {:>4.2}  {:>5.1} mm  {:>4.1} mm/s",
+        network.node_count(),
+        1e4 * lying,
+        1e4 * draped,
+        draped / lying,
+        1e3 * (highest - lowest),
+        1e3 * played.speed,
+    );
+    // It lies on the sphere, hangs over it, and has come to rest but for slow settling.
+    assert!(played.steps.last().is_some_and(|step| step.contacts > 0), "{name}");
+    assert!((20e-3..46e-3).contains(&highest), "{name}: {highest}");
+    assert!(lowest < 0.0, "{name}: {lowest}");
+    assert!(played.speed < 0.03, "{name}: {}", played.speed);
+    // No yarn passes through another: docs/topics/topology.md tells what lace needs for it.
+    let settings = CurveSettings::of(&played.scene.yarns, &played.scene.fabric);
+    let drawn: Vec<_> = played.frames.iter().map(|frame| curves(network, frame, &settings)).collect();
+    let mut passages = Passages::of(network);
+    drawn.windows(2).for_each(|pair| passages.follow(&pair[0], &pair[1]));
+    assert!(passages.pairs().next().is_none(), "{name}: {:?}", passages.pairs().collect::<Vec<_>>());
+    let order = CrossingOrder::of(network, drawn.last().unwrap(), &fronts(network, &frame));
+    println!("                {} contacts in order, out of order {:?}", order.right, order.wrong);
+    assert!(order.wrong.len() <= order.right / SEEN_FROM_THE_BACK, "{name}: {:?}", order.wrong);
+    draped / lying
 }
 
 #[test]
