@@ -38,7 +38,7 @@ pub struct Arguments {
 pub enum Command {
     /// Write a scene file to begin from
     New(New),
-    /// Check a scene without running it; print sizes, memory and time
+    /// Check a scene, a chart or a draft without running it; print yarn, mass, density, flaws, memory and time
     Check(Check),
     /// Run a scene into a run folder
     Run(Run),
@@ -52,7 +52,7 @@ pub enum Command {
     Register(register::Register),
     /// Do a virtual textile test on a fabric, by shell, tile or yarns: KES, FAST, cantilever, drape, curl, …
     Lab(lab::Lab),
-    /// Count loops, nodes and yarn of a scene or a run
+    /// Count loops, nodes and yarn of a scene, a chart, a draft or a run
     Inspect(Inspect),
     /// Draw frames of a run as PNG pictures
     Render(Render),
@@ -108,8 +108,11 @@ pub struct Inspect {
     /// Stitches that a float may pass before it is mentioned
     #[arg(long, value_name = "STITCHES", default_value_t = 5)]
     pub longest_float: u32,
-    /// Scene file or run folder
+    /// Scene file or run folder, or instructions (.knit, .txt), knitout (.k), an image (.png) or a draft (.wif) without a scene
     pub path: PathBuf,
+    /// Yarn of what is given without a scene; worsted-wool if left out
+    #[arg(long, value_enum, value_name = "PRESET")]
+    pub yarn: Option<Preset>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use wale::geometry::{Curve, CurveSettings, Solid, curves, solid_at};
 use wale::model::{Frame, Network};
 use wale::record::{RecordError, RunReader};
-use wale::scene::{ErrorClass, Scene, SceneError, SceneFile};
+use wale::scene::{ErrorClass, Scene, SceneError, SceneFile, is_bare, read_bare};
 use wale::simulation::{Simulation, Start};
 
-use crate::arguments::FrameChoice;
+use crate::arguments::{FrameChoice, Preset};
 use crate::estimate::Estimate;
 use crate::exit::{Code, Failure};
 use crate::machine;
@@ -20,6 +20,8 @@ pub struct OpenedScene {
     pub scene: Scene,
     /// The files it was read from.
     pub inputs: Vec<PathBuf>,
+    /// The yarn that was assumed for a chart or a draft without a scene.
+    pub assumed: Option<Preset>,
 }
 
 impl OpenedScene {
@@ -28,8 +30,32 @@ impl OpenedScene {
     /// # Errors
     /// What is wrong with it, with the place underlined.
     pub fn read(path: &Path) -> Result<Self, Failure> {
+        if is_bare(path) {
+            return Err(Failure::new(
+                Code::BadInput,
+                format_args!(
+                    "{}: a chart or a draft is no scene: name it as the file of one (`wale new`); \
+                     `check` and `inspect` take it as it is",
+                    path.display()
+                ),
+            ));
+        }
         let SceneFile { scene, inputs } = Scene::read_with_inputs(path).map_err(scene_failure)?;
-        Ok(Self { scene, inputs })
+        Ok(Self { scene, inputs, assumed: None })
+    }
+
+    /// Reads a scene file, or a chart or a draft without a scene, of a yarn that can be chosen.
+    ///
+    /// # Errors
+    /// What is wrong with it, with the place underlined; a yarn that is chosen for a scene.
+    pub fn read_with_yarn(path: &Path, yarn: Option<Preset>) -> Result<Self, Failure> {
+        if is_bare(path) {
+            let yarn = yarn.unwrap_or(Preset::WorstedWool);
+            let SceneFile { scene, inputs } = read_bare(path, yarn.into()).map_err(scene_failure)?;
+            return Ok(Self { scene, inputs, assumed: Some(yarn) });
+        }
+        no_yarn(path, yarn)?;
+        Self::read(path)
     }
 
     /// Rows and columns of the chart.
@@ -87,6 +113,20 @@ impl OpenedScene {
     /// When they cannot be started.
     pub fn use_threads(&self, asked: Option<u16>) -> Result<usize, Failure> {
         machine::use_threads(asked.map(usize::from).or(self.scene.plan.simulation.threads))
+    }
+}
+
+/// Refuses a yarn that is chosen for what has one.
+///
+/// # Errors
+/// If one is.
+pub fn no_yarn(path: &Path, yarn: Option<Preset>) -> Result<(), Failure> {
+    match yarn {
+        None => Ok(()),
+        Some(_) => Err(Failure::new(
+            Code::Usage,
+            format_args!("{}: --yarn is for charts and drafts; a scene says its yarn itself", path.display()),
+        )),
     }
 }
 

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use wale::scene::schema::PresetName;
 
 use crate::machine::parse_size;
 
@@ -30,6 +31,24 @@ pub enum Preset {
     ThickAcrylic,
 }
 
+impl Preset {
+    /// Its name, as scenes and the command line have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        PresetName::from(self).name()
+    }
+}
+
+impl From<Preset> for PresetName {
+    fn from(preset: Preset) -> Self {
+        match preset {
+            Preset::FineCottonJersey => Self::FineCottonJersey,
+            Preset::WorstedWool => Self::WorstedWool,
+            Preset::ThickAcrylic => Self::ThickAcrylic,
+        }
+    }
+}
+
 /// Limits that `check`, `run` and `relax` share.
 #[derive(Debug, Args)]
 pub struct Limits {
@@ -55,8 +74,12 @@ pub struct Check {
     /// Stitches that a float may pass before it is mentioned
     #[arg(long, value_name = "STITCHES", default_value_t = 5)]
     pub longest_float: u32,
-    /// Scene file, or with --topology a run folder
+    /// Scene file, or instructions (.knit, .txt), knitout (.k), an image (.png) or a draft (.wif) without a scene; with --topology
+    /// a run folder, too
     pub scene: PathBuf,
+    /// Yarn of what is given without a scene; worsted-wool if left out
+    #[arg(long, value_enum, value_name = "PRESET")]
+    pub yarn: Option<Preset>,
     /// Print JSON
     #[arg(long)]
     pub json: bool,

@@ -1,11 +1,10 @@
 //! `wale check`: whether a scene is sound, how large it is, and what it will take.
 
 use serde_json::json;
-use wale::measure::Census;
 use wale::record::{Checkpoints, Frames};
 
 use crate::arguments::Check;
-use crate::commands::inspect::yarns_and_flaws;
+use crate::commands::census::{FabricFacts, laid_out};
 use crate::commands::topology::topology;
 use crate::exit::Failure;
 use crate::opened::OpenedScene;
@@ -17,14 +16,16 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     if arguments.topology {
         return topology(arguments);
     }
-    let opened = OpenedScene::read(&arguments.scene)?;
+    let opened = OpenedScene::read_with_yarn(&arguments.scene, arguments.yarn)?;
     if arguments.resolved {
         return output::line(format_args!("{}", opened.resolved()?.trim_end()));
     }
     opened.check_memory(arguments.limits.max_memory)?;
     let [rows, columns] = opened.chart_size();
     let estimate = opened.estimate();
-    let census = Census::of(&opened.plain_network(), &opened.scene.yarns, &opened.scene.fabric);
+    let network = opened.plain_network();
+    let facts = FabricFacts::of(&opened.scene, &network, &laid_out(&network), opened.assumed);
+    let census = &facts.census;
     let plan = &opened.scene.plan.simulation;
     let frames = (plan.duration * plan.frame_rate + 1e-6).floor() as u64 + 1;
     let frame_bytes = Frames::byte_count(census.nodes, census.passes);
@@ -32,17 +33,18 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     let files = frames.saturating_mul(frame_bytes).saturating_add(2 * checkpoint_bytes);
     let seconds = estimate.seconds(plan.duration, plan.largest_step);
     if arguments.json {
-        return output::json(&json!({
-            "scene": arguments.scene,
-            "fabric": census,
-            "frames": frames,
-            "memory": estimate.memory.iter().map(|(name, bytes)| json!({"item": name, "bytes": bytes})).collect::<Vec<_>>(),
-            "memory_bytes": estimate.total(),
-            "files_bytes": files,
-            "time_s": { "least": seconds[0], "most": seconds[1] },
-        }));
+        let mut told = facts.json();
+        told["scene"] = json!(arguments.scene);
+        told["frames"] = json!(frames);
+        let items = estimate.memory.iter().map(|(name, bytes)| json!({"item": name, "bytes": bytes}));
+        told["memory"] = items.collect();
+        told["memory_bytes"] = json!(estimate.total());
+        told["files_bytes"] = json!(files);
+        told["time_s"] = json!({ "least": seconds[0], "most": seconds[1] });
+        return output::json(&told);
     }
     say!("{}: sound", arguments.scene.display())?;
+    facts.say_assumed()?;
     let cells = grouped(census.loops as u64);
     if opened.scene.structure.woven().is_some() {
         say!("  draft    {columns} ends, {rows} picks, {cells} crossings")?;
@@ -56,10 +58,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         census.yarn_length_m,
         1e3 * census.mass_kg
     )?;
-    yarns_and_flaws(&census, arguments.longest_float)?;
-    for (line, what) in opened.scene.structure.remarks() {
-        say!("  line {line:<4} {what}")?;
-    }
+    facts.say(arguments.longest_float)?;
     say!(
         "  run      {} s, {} frames, steps of at most {} ms",
         plan.duration,

@@ -1,51 +1,50 @@
 //! `wale inspect`: what a scene's fabric, or a run's, consists of and measures.
 
 use serde_json::{Value, json};
-use wale::measure::{Census, Shape, shadow_area};
-use wale::model::{Frame, Network};
+use wale::measure::shadow_area;
+use wale::model::Frame;
 use wale::record::{RunReader, Status};
 
 use crate::arguments::{FrameChoice, Inspect};
+use crate::commands::census::{FabricFacts, laid_out};
 use crate::exit::Failure;
-use crate::opened::{OpenedRun, OpenedScene};
+use crate::opened::{OpenedRun, OpenedScene, no_yarn};
 use crate::output::{self, grouped};
 use crate::say;
 
 /// Inspects it.
 pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     let path = &arguments.path;
-    let (network, scene, frame, run);
+    let (network, scene, frame, run, assumed);
     if path.is_dir() {
+        no_yarn(path, arguments.yarn)?;
         let opened = OpenedRun::open(path, FrameChoice::Last)?;
         frame = opened.frame(opened.frames.start)?;
         run = Some(run_facts(&opened.reader, &frame)?);
-        (network, scene) = (opened.network, opened.scene);
+        (network, scene, assumed) = (opened.network, opened.scene, None);
     } else {
-        let opened = OpenedScene::read(path)?;
+        let opened = OpenedScene::read_with_yarn(path, arguments.yarn)?;
         opened.check_memory(None)?;
-        network = opened.start().network;
-        frame = initial(&network);
+        // Without a scene nothing asks for the shapes of relaxed loops.
+        network = if opened.assumed.is_some() { opened.plain_network() } else { opened.start().network };
+        frame = laid_out(&network);
         run = None;
-        scene = opened.scene;
+        (scene, assumed) = (opened.scene, opened.assumed);
     }
-    let census = Census::of(&network, &scene.yarns, &scene.fabric);
-    let shape = Shape::of(&network, &frame);
-    let areal_mass = census.areal_mass(shape.stitch_density_per_m2);
+    let facts = FabricFacts::of(&scene, &network, &frame, assumed);
+    let FabricFacts { census, shape, .. } = &facts;
     let shadow = shadow_area(&network, &frame, scene.fabric.cell());
     if arguments.json {
-        let mut facts = json!({
-            "path": path,
-            "fabric": census,
-            "shape": shape,
-            "areal_mass_kg_per_m2": areal_mass,
-            "shadow_area_m2": shadow,
-        });
+        let mut told = facts.json();
+        told["path"] = json!(path);
+        told["shadow_area_m2"] = json!(shadow);
         if let Some(run) = run {
-            facts["run"] = run;
+            told["run"] = run;
         }
-        return output::json(&facts);
+        return output::json(&told);
     }
     say!("{}", path.display())?;
+    facts.say_assumed()?;
     if let Some(run) = &run {
         let text = |key: &str| run[key].as_str().unwrap_or_default().to_owned();
         say!("  run      {}, {} frames, last at {} s", text("status"), run["frames"], run["time_s"])?;
@@ -74,55 +73,15 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         census.yarn_length_m,
         1e3 * census.mass_kg
     )?;
-    yarns_and_flaws(&census, arguments.longest_float)?;
+    facts.say(arguments.longest_float)?;
     let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
     say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
     say!("  shadow   {:.2} cm² from straight above", 1e4 * shadow)?;
-    let [cell, cells] = match scene.fabric.woven() {
-        Some(_) => ["crossing", "crossings"],
-        None => ["stitch  ", "loops"],
-    };
-    say!(
-        "  {cell} {:.2} mm wide, {:.2} mm high, {:.2} {cells}/cm²",
-        1e3 * shape.wale_spacing_m,
-        1e3 * shape.course_spacing_m,
-        1e-4 * shape.stitch_density_per_m2
-    )?;
-    say!("  mass     {:.0} g/m²", 1e3 * areal_mass)?;
     say!(
         "  curl     sides {:+.1} 1/m along the course, ends {:+.1} 1/m along the wale (+ to the front)",
         shape.side_edges.course_per_m,
         shape.end_edges.wale_per_m
     )
-}
-
-/// Prints how much there is of each yarn, and what a knitter would mend: dropped loops and long floats.
-pub fn yarns_and_flaws(census: &Census, longest_float: u32) -> Result<(), Failure> {
-    if census.yarn_lengths_m.len() > 1 {
-        for (at, length) in census.yarn_lengths_m.iter().enumerate() {
-            let mass = 1e3 * census.yarn_masses_kg[at];
-            say!("             {length:>8.3} m, {mass:.3} g of yarn {}", at + 1)?;
-        }
-    }
-    let dropped = census.unsupported_loops.len();
-    if dropped > 0 {
-        let shown: Vec<String> = census
-            .unsupported_loops
-            .iter()
-            .take(5)
-            .map(|[row, column]| format!("row {} column {}", row + 1, column + 1))
-            .collect();
-        let more = if dropped > shown.len() { ", …" } else { "" };
-        say!("  dropped  {dropped} loops that nothing holds: {}{more}", shown.join(", "))?;
-    }
-    let long = census.floats.iter().take_while(|float| **float > longest_float).count();
-    if long > 0 {
-        say!(
-            "  floats   {long} pass more than {longest_float} stitches, the longest {}",
-            census.floats.first().copied().unwrap_or(0)
-        )?;
-    }
-    Ok(())
 }
 
 fn run_facts(reader: &RunReader, last: &Frame) -> Result<Value, Failure> {
@@ -136,9 +95,4 @@ fn run_facts(reader: &RunReader, last: &Frame) -> Result<Value, Failure> {
         "time_s": last.time,
         "version": reader.environment()?.version,
     }))
-}
-
-/// The initial layout as a frame.
-fn initial(network: &Network) -> Frame {
-    Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() }
 }

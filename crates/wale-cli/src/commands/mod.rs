@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod bench;
+pub mod census;
 pub mod check;
 pub mod export;
 pub mod fit;

@@ -27,12 +27,7 @@ pub fn new(arguments: &New) -> Result<(), Failure> {
 
 /// The template with another yarn.
 fn text(preset: Preset) -> String {
-    let name = match preset {
-        Preset::FineCottonJersey => "\"fine-cotton-jersey\"",
-        Preset::WorstedWool => TEMPLATE_PRESET,
-        Preset::ThickAcrylic => "\"thick-acrylic\"",
-    };
-    template().replacen(TEMPLATE_PRESET, name, 1)
+    template().replacen(TEMPLATE_PRESET, &format!("\"{}\"", preset.name()), 1)
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use wale::model::{Frame, Network, NodeId, PassId, YarnId};
 
 use crate::arguments::{Check, FrameChoice};
 use crate::exit::{Code, Failure};
-use crate::opened::{OpenedRun, OpenedScene};
+use crate::opened::{OpenedRun, OpenedScene, no_yarn};
 use crate::output::{self, grouped};
 use crate::say;
 
@@ -28,11 +28,15 @@ struct Found {
 
 /// Checks a scene, or a run from its first frame to its last.
 pub fn topology(arguments: &Check) -> Result<(), Failure> {
-    if arguments.scene.is_dir() { run(&arguments.scene, arguments.json) } else { scene(arguments) }
+    if arguments.scene.is_dir() {
+        no_yarn(&arguments.scene, arguments.yarn)?;
+        return run(&arguments.scene, arguments.json);
+    }
+    scene(arguments)
 }
 
 fn scene(arguments: &Check) -> Result<(), Failure> {
-    let opened = OpenedScene::read(&arguments.scene)?;
+    let opened = OpenedScene::read_with_yarn(&arguments.scene, arguments.yarn)?;
     opened.check_memory(arguments.limits.max_memory)?;
     let network = opened.plain_network();
     let frame = Frame { time: 0.0, positions: network.position.clone(), sliding: network.arc_length.clone() };

@@ -1,8 +1,11 @@
 //! Counts of a network's parts, and the amounts of yarn in it.
 
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
-use crate::model::{FabricCard, Network, NodeId, PassId, YarnId, Yarns};
+use crate::model::{FabricCard, Float, Network, NodeId, PassId, YarnId, Yarns};
 
 /// What a network consists of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -17,8 +20,8 @@ pub struct Census {
     pub knit_loops: usize,
     /// Loops that nothing holds: row and column of the chart, from 0.
     pub unsupported_loops: Vec<[u32; 2]>,
-    /// Places of the needle that each float passes, the longest first.
-    pub floats: Vec<u32>,
+    /// Floats, the longest first, then by their places.
+    pub floats: Vec<Float>,
     /// Stitch contacts.
     pub stitch_contacts: usize,
     /// Yarns.
@@ -31,13 +34,28 @@ pub struct Census {
     pub passes: usize,
     /// Degrees of freedom: three a node, and one for each pass that slides.
     pub degrees_of_freedom: usize,
-    /// Length of all real yarn \[m\]: the model's rest length over the card's path ratio.
+    /// Length of all real yarn \[m\]: the model's rest length over the card's path ratio. Yarns that run together as one count once.
     pub yarn_length_m: f64,
     /// The same by the fabric's yarns, in their order \[m\].
     pub yarn_lengths_m: Vec<f64>,
     /// Masses of the fabric's yarns, in their order \[kg\].
     pub yarn_masses_kg: Vec<f64>,
     /// Mass of all yarns \[kg\].
+    pub mass_kg: f64,
+    /// How much there is of each yarn in each colour; of yarns that run together, of each of them.
+    pub amounts: Vec<YarnAmount>,
+}
+
+/// How much there is of a yarn in a colour.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct YarnAmount {
+    /// Its name; "yarn" where the fabric has but one, without a name.
+    pub name: String,
+    /// Its colour as `#rrggbb`.
+    pub color: String,
+    /// Its length \[m\], as real yarn.
+    pub length_m: f64,
+    /// Its mass \[kg\].
     pub mass_kg: f64,
 }
 
@@ -57,14 +75,16 @@ impl Census {
         let sliding = (0..network.pass_count()).filter(|&pass| network.slides(PassId::new(pass))).count();
         let kinds = network.yarn_kind.iter().max().map_or(0, |most| usize::from(*most) + 1);
         let mut yarn_lengths_m = vec![0.0; kinds];
+        let mut by_color: BTreeMap<(u8, [u8; 3]), f64> = BTreeMap::new();
         for (y, kind) in network.yarn_kind.iter().enumerate() {
-            yarn_lengths_m[usize::from(*kind)] +=
-                network.length_of(YarnId::new(y)) / card.path_ratio(network.yarn_role[y]);
+            let length = network.length_of(YarnId::new(y)) / card.path_ratio(network.yarn_role[y]);
+            yarn_lengths_m[usize::from(*kind)] += length;
+            *by_color.entry((*kind, network.yarn_color[y])).or_default() += length;
         }
         let masses = (0..).zip(&yarn_lengths_m).map(|(kind, length)| length * yarns.of(kind).linear_density);
         let yarn_masses_kg: Vec<f64> = masses.collect();
         let mut floats = network.floats.clone();
-        floats.sort_unstable_by(|a, b| b.cmp(a));
+        floats.sort_unstable_by_key(|float| (Reverse(float.over), float.row, float.column));
         Self {
             rows: network.chart_size[0],
             columns: network.chart_size[1],
@@ -87,8 +107,37 @@ impl Census {
             mass_kg: yarn_masses_kg.iter().sum(),
             yarn_masses_kg,
             yarn_lengths_m,
+            amounts: amounts(&yarns, by_color),
         }
     }
+}
+
+/// Amounts by name and colour, from lengths by number and colour.
+fn amounts(yarns: &Yarns, by_color: BTreeMap<(u8, [u8; 3]), f64>) -> Vec<YarnAmount> {
+    let mut amounts: Vec<YarnAmount> = Vec::new();
+    let mut known: BTreeMap<(&str, [u8; 3]), usize> = BTreeMap::new();
+    for ((kind, color), length) in by_color {
+        let mut add = |name, [r, g, b]: [u8; 3], mass: f64| {
+            let at = *known.entry((name, [r, g, b])).or_insert(amounts.len());
+            if at == amounts.len() {
+                let (name, color) = (str::to_owned(name), format!("#{r:02x}{g:02x}{b:02x}"));
+                amounts.push(YarnAmount { name, color, length_m: 0.0, mass_kg: 0.0 });
+            }
+            amounts[at].length_m += length;
+            amounts[at].mass_kg += mass;
+        };
+        let mass = length * yarns.of(kind).linear_density;
+        let members = yarns.members(kind);
+        // A density of the whole that is said of its own is shared as those of the members are.
+        let sum: f64 = members.iter().map(|member| member.card.linear_density).sum();
+        for member in members {
+            add(&member.name, member.color, mass * member.card.linear_density / sum);
+        }
+        if members.is_empty() {
+            add(yarns.name(kind).unwrap_or("yarn"), color, mass);
+        }
+    }
+    amounts
 }
 
 impl Census {

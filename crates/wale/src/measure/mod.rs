@@ -4,6 +4,6 @@ pub mod census;
 pub mod shadow;
 pub mod shape;
 
-pub use census::Census;
+pub use census::{Census, YarnAmount};
 pub use shadow::shadow_area;
 pub use shape::{Curvature, Shape};

@@ -17,11 +17,12 @@ pub use ids::{NodeId, PassId, StitchId, YarnId};
 pub use knit_card::{KnitCard, LoopProportions, Thickness};
 pub use motion::{Motion, Pose};
 pub use network::{
-    ContactPair, Crossing, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair, YarnRole,
+    ContactPair, Crossing, Float, LoopInfo, Neighbour, Network, PassKind, SegmentKind, StitchContact, WrapPair,
+    YarnRole,
 };
 pub use plan::{
     Drive, ExportFormat, Grip, LinearSolver, Obstacle, Output, Pictures, Placement, Plan, Shape, Simulation,
 };
 pub use selection::{Edge, Selection, WhichEnd};
 pub use woven_card::{WovenCard, WovenGeometry};
-pub use yarn_card::{YarnCard, Yarns};
+pub use yarn_card::{Member, YarnCard, Yarns};

@@ -1,6 +1,7 @@
 //! The network: what does not change while a fabric moves.
 
 use glam::DVec3;
+use serde::Serialize;
 
 use super::ids::{NodeId, PassId, YarnId};
 
@@ -84,6 +85,17 @@ pub struct StitchContact {
     pub wrap_sign: f64,
     /// The pairs that wrap.
     pub pairs: Vec<WrapPair>,
+}
+
+/// A strand that passes places of the needle without a loop there, or a thread that passes others on one side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Float {
+    /// Places that it passes; of a weave, threads.
+    pub over: u32,
+    /// Row of the loop, or pick of the crossing, that it comes from, from 0; a cast-on counts as the first row.
+    pub row: u32,
+    /// Column of that loop, or end of that crossing, from 0.
+    pub column: u32,
 }
 
 /// Where a warp end and a weft pick cross.
@@ -172,8 +184,8 @@ pub struct Network {
     pub crossings: Vec<Crossing>,
     /// Loops of the chart, or crossings of the draft: what is a knit there has the warp in front.
     pub loops: Vec<LoopInfo>,
-    /// How many places of the needle each float passes, in the order of the yarns; strands that pass none are no floats.
-    pub floats: Vec<u32>,
+    /// Floats in the order of the yarns; strands that pass nothing are none.
+    pub floats: Vec<Float>,
     /// Rows and columns of the chart.
     pub chart_size: [u32; 2],
     /// Places on the needle after each row of the chart.

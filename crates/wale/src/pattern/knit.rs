@@ -9,7 +9,7 @@ use super::rest_lengths::{RestLengths, Segment};
 use super::stacks::{self, Made};
 use super::work::{work, work_tile};
 use super::working::Working;
-use crate::model::{KnitCard, LoopInfo, Network, NodeId, PassKind, SegmentKind, YarnRole};
+use crate::model::{Float, KnitCard, LoopInfo, Network, NodeId, PassKind, SegmentKind, YarnRole};
 
 /// The four own nodes of a loop, left to right along its yarn.
 pub(super) const LEFT_FOOT: usize = 0;
@@ -287,7 +287,11 @@ impl<'a> Builder<'a> {
             };
             let mut lead = match (onward, next) {
                 (Onward::Sinker { over }, Some((Stop::Loop { id: next, .. }, _))) => {
-                    self.network.floats.extend((*over > 0).then_some(*over));
+                    if *over > 0 {
+                        let from = graph.of(id);
+                        let row = u32::try_from(from.row).unwrap_or(0);
+                        self.network.floats.push(Float { over: *over, row, column: from.column });
+                    }
                     let (from, to) = if rightward { (id, *next) } else { (*next, id) };
                     self.rest.joint(graph.of(from), graph.of(to), *over)
                 }

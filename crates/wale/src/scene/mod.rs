@@ -18,6 +18,7 @@
 //! # Ok::<(), wale::scene::SceneError>(())
 //! ```
 
+mod bare;
 pub mod dimensions;
 mod error;
 mod locate;
@@ -32,6 +33,7 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
+pub use bare::{is_bare, read_bare};
 pub use error::{ErrorClass, SceneError};
 pub use text_file::TextFile;
 
@@ -138,10 +140,10 @@ pub fn template() -> &'static str {
 /// A scene file that shows a preset.
 #[must_use]
 pub fn text_of_preset(preset: PresetName) -> String {
-    let name = serde_json::to_value(preset).ok().and_then(|name| name.as_str().map(str::to_owned)).unwrap_or_default();
     format!(
-        "schema = {SCHEMA}\n\n[yarn]\npreset = \"{name}\"\n\n\
-         [fabric.chart]\npattern = \"stockinette\"\ncolumns = 20\nrows = 20\n"
+        "schema = {SCHEMA}\n\n[yarn]\npreset = \"{}\"\n\n\
+         [fabric.chart]\npattern = \"stockinette\"\ncolumns = 20\nrows = 20\n",
+        preset.name()
     )
 }
 

@@ -6,6 +6,16 @@ impl PresetName {
     /// All presets.
     pub const ALL: [Self; 3] = [Self::FineCottonJersey, Self::WorstedWool, Self::ThickAcrylic];
 
+    /// Its name, as scenes have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::FineCottonJersey => "fine-cotton-jersey",
+            Self::WorstedWool => "worsted-wool",
+            Self::ThickAcrylic => "thick-acrylic",
+        }
+    }
+
     /// The preset's file.
     #[must_use]
     pub fn toml(self) -> &'static str {

@@ -2,6 +2,7 @@
 
 mod cards;
 mod refusals;
+mod together;
 mod weaves;
 
 use super::*;

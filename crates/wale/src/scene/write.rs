@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{DQuat, DVec3};
 
+use super::resolve::text_of_yarn;
 use super::schema::{
     Axes, AxisAngle, BiasText, BoxText, CapsuleText, ChartText, Color, ContactModel, FabricText, FirstRow, Gravity,
     GripText, KeyText, MotionText, ObstacleText, OutputText, PlaneText, PullText, RegionText, SceneText, SelectText,
@@ -51,27 +52,9 @@ fn quaternion(value: DQuat) -> Written<Option<AxisAngle>> {
 }
 
 /// A yarn by its number.
-fn yarn(scene: &Scene, number: usize) -> Written<YarnText> {
-    let card = scene.yarns.of(u8::try_from(number).unwrap_or(0));
-    Ok(YarnText {
-        preset: None,
-        card: None,
-        linear_density: some(card.linear_density)?,
-        diameter: some(2.0 * card.radius)?,
-        packing: None,
-        fibre_density: None,
-        stretch_stiffness: some(card.stretch_stiffness)?,
-        elastic_modulus: None,
-        bending_stiffness: some(card.bending_stiffness)?,
-        bending_modulus: None,
-        friction: some(card.friction_coefficient)?,
-        mass_damping: some(card.mass_damping)?,
-        stiffness_damping: some(card.stiffness_damping)?,
-        loose_ends: Some(card.loose_ends),
-        color: scene.yarn_colors.get(number).copied().map(Color),
-        plies: Some(card.plies),
-        twist: some(card.twist)?,
-    })
+fn yarn(scene: &Scene, number: u8) -> Written<YarnText> {
+    let color = scene.yarn_colors.get(usize::from(number)).copied().unwrap_or_default();
+    text_of_yarn(scene.yarns.of(number), color)
 }
 
 fn fabric(scene: &Scene) -> Written<FabricText> {
@@ -178,7 +161,7 @@ fn chart(scene: &Scene) -> ChartText {
     ChartText {
         symbols: Some(lines),
         legend: Some(legend),
-        yarns: (scene.yarn_colors.len() > 1).then_some(yarns),
+        yarns: (scene.yarn_colors.len() > 1 || scene.yarns.name(0).is_some()).then_some(yarns),
         columns: Some(chart.cast_on() as u64),
         rows: Some(chart.row_count() as u64),
         worked: Some(worked),
@@ -208,20 +191,44 @@ fn name(yarn: u8) -> char {
     char::from(b'A' + yarn % 26)
 }
 
-/// The yarns after the first, by their letters.
+/// The yarns after the first by their letters, and the first where it has another name or is several.
 fn other_yarns(scene: &Scene) -> Written<BTreeMap<String, YarnText>> {
-    (1..scene.yarn_colors.len())
-        .map(|at| {
-            Ok((yarn_name(scene, at), YarnText { mass_damping: None, stiffness_damping: None, ..yarn(scene, at)? }))
-        })
-        .collect()
+    let of_the_fabric = |text: YarnText| YarnText { mass_damping: None, stiffness_damping: None, ..text };
+    let count = u8::try_from(scene.yarn_colors.len()).unwrap_or(u8::MAX);
+    let keys: BTreeSet<String> = (0..count).map(|at| yarn_name(scene, at)).collect();
+    let mut tables = BTreeMap::new();
+    for at in 0..count {
+        let key = yarn_name(scene, at);
+        let mut together = Vec::new();
+        for member in scene.yarns.members(at) {
+            let mut own_key = format!("{key}.{}", together.len() + 1);
+            while keys.contains(&own_key) {
+                own_key.push('\'');
+            }
+            let text = of_the_fabric(text_of_yarn(&member.card, member.color)?);
+            tables.insert(own_key.clone(), YarnText { name: Some(member.name.clone()), ..text });
+            together.push(own_key);
+        }
+        let name = scene.yarns.name(at).filter(|name| *name != key).map(str::to_owned);
+        let together = (!together.is_empty()).then_some(together);
+        let numbers = match (at, &together) {
+            // The scene's yarn says them.
+            (0, None) => YarnText::default(),
+            _ => of_the_fabric(yarn(scene, at)?),
+        };
+        let text = YarnText { name, together, ..numbers };
+        if text != YarnText::default() {
+            tables.insert(key, text);
+        }
+    }
+    Ok(tables)
 }
 
 /// Letters name the yarns of a chart and of a draft, carriers those of a program.
-fn yarn_name(scene: &Scene, at: usize) -> String {
+fn yarn_name(scene: &Scene, at: u8) -> String {
     match &scene.structure {
-        Structure::Chart { .. } | Structure::Woven(_) => name(u8::try_from(at).unwrap_or(u8::MAX)).to_string(),
-        Structure::Machine(program) => program.knitted.carriers.get(at).cloned().unwrap_or_default(),
+        Structure::Chart { .. } | Structure::Woven(_) => name(at).to_string(),
+        Structure::Machine(program) => program.knitted.carriers.get(usize::from(at)).cloned().unwrap_or_default(),
     }
 }
 
@@ -338,7 +345,7 @@ fn select(scene: &Scene, selection: &Selection) -> Written<SelectText> {
         }
         Selection::YarnEnd { yarn, length, end } => {
             text.yarn_end = Some(YarnEndText {
-                yarn: yarn_name(scene, usize::from(*yarn)),
+                yarn: yarn_name(scene, *yarn),
                 number: length.map(|length| length.saturating_add(1)),
                 end: *end,
             });

@@ -250,3 +250,30 @@ fn changing_yarns_over_and_over_is_nothing_to_repeat() {
     }
     assert!(read_instructions("Cast on 4\nRow 1: [with B, k1, with A, k1] 2 times\n", None).is_ok());
 }
+
+#[test]
+fn yarns_that_are_held_together_are_one() {
+    let yarns = |row: &str| {
+        let text = format!("Cast on 4\nRow 1: {row}\n");
+        read_instructions(&text, None).unwrap_or_else(|error| panic!("{row}: {error}")).yarns
+    };
+    for row in [
+        "with A and B held together, k4",
+        "with A and B together, k4",
+        "with yarns A, and B held together k",
+        "with A + B held together, *k2*",
+        "with 1 strand each of A and B held together, k to end",
+        "with one strand each of A and B together, k4",
+    ] {
+        assert_eq!(yarns(row), ["A B"], "{row}");
+    }
+    assert_eq!(yarns("with MC, C1 & C2 held together, k2, with MC, k2"), ["MC C1 C2", "MC"]);
+    for row in ["with A held double, k4", "with two strands of A, k4", "with 2 strands of A held together, k4"] {
+        assert_eq!(yarns(row), ["A A"], "{row}");
+    }
+    // What follows a yarn is no other one.
+    assert_eq!(yarns("with A, k2, k2tog"), ["A"]);
+    assert_eq!(yarns("with A and k2, then with B, k2"), ["A", "B"]);
+    let many: String = (0..17).map(|yarn| format!("y{yarn}, ")).collect();
+    assert!(read_instructions(&format!("Cast on 4\nRow 1: with {many}held together, k4\n"), None).is_err());
+}

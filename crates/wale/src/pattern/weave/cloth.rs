@@ -4,7 +4,7 @@
 use glam::{DQuat, DVec3};
 
 use super::draft::{Draft, Thread};
-use crate::model::{Crossing, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnId, YarnRole};
+use crate::model::{Crossing, Float, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnId, YarnRole};
 
 /// How the weft goes at the sides.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -290,14 +290,18 @@ impl<'a> Weaver<'a> {
 
     /// How many yarns each float passes.
     fn floats(&mut self) {
-        let mut run = 1;
-        for kind in &self.network.segment_kind {
-            if *kind == SegmentKind::Float {
-                run += 1;
-            } else {
-                self.network.floats.extend((run > 1).then_some(run));
-                run = 1;
+        let network = &mut self.network;
+        let is_float = |kind: &&SegmentKind| **kind == SegmentKind::Float;
+        let mut pass = 0;
+        while pass < network.segment_kind.len() {
+            let segments = network.segment_kind[pass..].iter().take_while(is_float).count();
+            if segments > 0 {
+                // It comes from a crossing, and those are the first nodes.
+                let LoopInfo { row, column, .. } = network.loops[network.pass_node[pass].index()];
+                let over = u32::try_from(segments + 1).unwrap_or(u32::MAX);
+                network.floats.push(Float { over, row, column });
             }
+            pass += segments + 1;
         }
     }
 }
@@ -324,8 +328,16 @@ mod tests {
             }
             let cut = selvedge == Selvedge::Cut;
             assert_eq!(network.yarn_count(), if cut { 12 } else { 8 });
-            let longest = network.floats.iter().copied().max();
+            let longest = network.floats.iter().map(|float| float.over).max();
             assert_eq!(longest, Some(2));
+            for float in &network.floats {
+                // The next crossing of the thread, to either side or up, shows the same side.
+                let (end, pick) = (float.column as usize, float.row as usize);
+                let up = |end: usize, pick: usize| end < 7 && pick < 5 && draft.warp_up(end, pick);
+                let same = |other: (usize, usize)| up(end, pick) == up(other.0, other.1);
+                let weft = [(end + 1, pick), (end.wrapping_sub(1), pick)];
+                assert!(if up(end, pick) { same((end, pick + 1)) } else { weft.into_iter().any(same) }, "{float:?}");
+            }
             // Everything is as long as it is laid.
             for yarn in 0..network.yarn_count() {
                 let passes = network.yarn_passes(YarnId::new(yarn));

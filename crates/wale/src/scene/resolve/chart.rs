@@ -1,5 +1,6 @@
 //! The stitches of a scene: a pattern by name, symbols, or a file of written instructions.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::beside::{path_beside, read_text};
@@ -17,6 +18,8 @@ pub(super) struct Stitches {
     pub structure: Structure,
     /// By the chart's numbers; empty where none is named.
     pub yarns: Vec<String>,
+    /// Those of them that are several yarns which run together, and which.
+    pub together: BTreeMap<String, Vec<String>>,
     pub inputs: Vec<PathBuf>,
 }
 
@@ -53,7 +56,7 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
         })?;
         return machine(text, program, Vec::new());
     }
-    if let Some(name) = text.file.as_deref().filter(|name| name.ends_with(".k") || name.ends_with(".knitout")) {
+    if let Some(name) = text.file.as_deref().filter(|name| is_program(Path::new(name))) {
         let key = format!("{HERE}.file");
         let path = path_beside(&key, name, directory)?;
         let content = read_text(&path, &key, name, LARGEST_PROGRAM)?;
@@ -91,8 +94,21 @@ pub(super) fn resolve(text: Option<&ChartText>, directory: Option<&Path>) -> Res
             None => return Err(Complaint::new(HERE, "the chart has no stitches").into()),
         }
     };
+    let together = if text.file.is_some() { named_together(&named) } else { BTreeMap::new() };
     let (chart, yarns) = yarns::assign(chart, named, text, drawn.as_ref())?;
-    Ok(Stitches { structure: Structure::Chart { chart, working }, yarns, inputs })
+    Ok(Stitches { structure: Structure::Chart { chart, working }, yarns, together, inputs })
+}
+
+/// The names that files give to yarns which run together: those of all of them, with spaces between, which no single yarn of a
+/// file has in its name.
+fn named_together(names: &[String]) -> BTreeMap<String, Vec<String>> {
+    let several = names.iter().filter(|name| name.contains(' '));
+    several.map(|name| (name.clone(), name.split(' ').map(str::to_owned).collect())).collect()
+}
+
+/// Whether a file is a machine's program, by its extension.
+pub(in crate::scene) fn is_program(path: &Path) -> bool {
+    path.extension().is_some_and(|kind| kind.eq_ignore_ascii_case("k") || kind.eq_ignore_ascii_case("knitout"))
 }
 
 /// A machine's program says all itself.
@@ -112,7 +128,8 @@ fn machine(text: &ChartText, program: Program, inputs: Vec<PathBuf>) -> Result<S
         return Err(complaint.why("the program says it itself").mend(format!("leave {key} out")).into());
     }
     let yarns = program.knitted.carriers.clone();
-    Ok(Stitches { structure: Structure::Machine(Box::new(program)), yarns, inputs })
+    let together = named_together(&yarns);
+    Ok(Stitches { structure: Structure::Machine(Box::new(program)), yarns, together, inputs })
 }
 
 fn program_class(error: &KnitoutError) -> ErrorClass {

@@ -8,8 +8,10 @@ mod happening;
 mod plan;
 mod weave;
 mod yarn;
+mod yarn_cards;
 mod yarns;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use glam::{DQuat, DVec3};
@@ -20,6 +22,9 @@ use super::schema::{AxisAngle, Direction, SceneText};
 use super::units::{Bounds, Dimension, Quantity};
 use super::{SCHEMA, Scene};
 use crate::model::{FabricCard, Plan};
+pub(super) use chart::is_program;
+pub(super) use yarn::text_of as text_of_yarn;
+use yarn_cards::YarnCards;
 
 /// What is wrong, in this file or in one that it names.
 pub(super) enum Failure {
@@ -43,9 +48,12 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
     }
     let said = text.yarn.clone().unwrap_or_default();
     let base = base::base(text, directory)?;
+    let cards = |names: &[String], together: &BTreeMap<String, Vec<String>>| {
+        YarnCards { names, together, first: &said, base: &base, others: &text.yarns }.resolve()
+    };
     let (fabric, structure, (yarns, yarn_colors), names, inputs) = if let Some(weave) = &text.fabric.weave {
         let mut drafted = weave::resolve(weave, directory)?;
-        let (yarns, colors) = yarns::cards(&drafted.yarns, &said, &base, &text.yarns)?;
+        let (yarns, colors) = cards(&drafted.yarns, &BTreeMap::new())?;
         drafted.complete_colors(&colors);
         let card = weave::card(&text.fabric, &base.fabric, &drafted, &yarns)?;
         let (names, inputs) = (drafted.yarns.clone(), drafted.inputs.clone());
@@ -54,7 +62,7 @@ pub(super) fn scene(text: &SceneText, directory: Option<&Path>) -> Result<(Scene
         // A wrong yarn or loop is said before a wrong chart.
         yarn::resolve("yarn", &said, &base.yarn)?;
         let stitches = chart::resolve(text.fabric.chart.as_ref(), directory)?;
-        let (yarns, colors) = yarns::cards(&stitches.yarns, &said, &base, &text.yarns)?;
+        let (yarns, colors) = cards(&stitches.yarns, &stitches.together)?;
         let card = fabric::resolve(&text.fabric, &base.fabric, yarns.first())?;
         (FabricCard::Knit(card), stitches.structure, (yarns, colors), stitches.yarns, stitches.inputs)
     };

@@ -6,6 +6,7 @@ use super::si;
 use crate::model::YarnCard;
 use crate::scene::error::Complaint;
 use crate::scene::schema::{Color, YarnText};
+use crate::scene::units::{Bounds, Dimension, Quantity};
 
 /// Bulk densities outside are slips of a unit: loose mohair has some 30 kg/m³, glass 2500 \[kg/m³\].
 const BULK_DENSITY: std::ops::RangeInclusive<f64> = 5.0..=10_000.0;
@@ -53,11 +54,35 @@ pub(super) fn resolve(path: &str, said: &YarnText, base: &YarnText) -> Result<(Y
         plies: text.plies.unwrap_or(2),
         twist: si(text.twist).unwrap_or(0.0),
     };
-    if !(1..=12).contains(&card.plies) {
-        let what = format!("a yarn is drawn with 1 to 12 plies, not {}", card.plies);
+    if !(1..=YarnCard::MOST_PLIES).contains(&card.plies) {
+        let what = format!("a yarn is drawn with 1 to {} plies, not {}", YarnCard::MOST_PLIES, card.plies);
         return Err(Complaint::new(format!("{path}.plies"), what));
     }
     Ok((card, text.color.unwrap_or(Color([0x8a, 0x8a, 0x8a])).0))
+}
+
+/// What a scene would have to say of a yarn to give this card.
+///
+/// # Errors
+/// If a number is out of the bounds of the scene format.
+pub(in crate::scene) fn text_of(card: &YarnCard, color: [u8; 3]) -> Result<YarnText, String> {
+    fn some<D: Dimension, B: Bounds>(value: f64) -> Result<Option<Quantity<D, B>>, String> {
+        Quantity::new(value).map(Some)
+    }
+    Ok(YarnText {
+        linear_density: some(card.linear_density)?,
+        diameter: some(2.0 * card.radius)?,
+        stretch_stiffness: some(card.stretch_stiffness)?,
+        bending_stiffness: some(card.bending_stiffness)?,
+        friction: some(card.friction_coefficient)?,
+        mass_damping: some(card.mass_damping)?,
+        stiffness_damping: some(card.stiffness_damping)?,
+        loose_ends: Some(card.loose_ends),
+        color: Some(Color(color)),
+        plies: Some(card.plies),
+        twist: some(card.twist)?,
+        ..YarnText::default()
+    })
 }
 
 /// Two keys for one number.
@@ -83,6 +108,8 @@ pub(super) fn said_over_base(said: &YarnText, base: &YarnText) -> YarnText {
     YarnText {
         preset: None,
         card: None,
+        name: None,
+        together: None,
         linear_density: said.linear_density.or(base.linear_density),
         diameter: said.diameter.or(base.diameter.filter(|_| !sized)),
         packing: said.packing.or(base.packing).filter(|_| said.diameter.is_none()),

@@ -3,16 +3,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::base::Base;
+use super::Failure;
 use super::beside::{path_beside, read_bytes};
 use super::chart::{HERE, unknown_stitch};
-use super::{Failure, yarn};
-use crate::model::Yarns;
 use crate::pattern::image::{self, LARGEST_IMAGE, Pixels};
 use crate::pattern::instructions::MOST_YARNS;
 use crate::pattern::{Chart, Stitch};
-use crate::scene::error::{Complaint, ErrorClass, nearest, shortened};
-use crate::scene::schema::{ChartText, YarnText};
+use crate::scene::error::{Complaint, ErrorClass, shortened};
+use crate::scene::schema::ChartText;
 
 /// What an image draws, the lowest row first.
 pub(super) enum Drawn {
@@ -164,58 +162,4 @@ pub(super) fn assign(
     let yarns = yarns.collect();
     let chart = chart.with_yarns(yarns).map_err(|error| Complaint::new(format!("{HERE}.{key}"), error.to_string()))?;
     Ok((chart, grid.names))
-}
-
-/// The cards and colours of a fabric's yarns: what they have of their own, over what the scene's yarn says.
-pub(super) fn cards(
-    names: &[String],
-    first: &YarnText,
-    base: &Base,
-    others: &BTreeMap<String, YarnText>,
-) -> Result<(Yarns, Vec<[u8; 3]>), Complaint> {
-    for other in others.keys() {
-        if !names.contains(other) {
-            let near = nearest(other, names.iter().map(String::as_str));
-            let complaint =
-                Complaint::new(format!("yarns.{other}"), format!("the fabric has no yarn \"{}\"", shortened(other)));
-            return Err(match near {
-                Some(near) => complaint.mend(format!("did you mean \"{near}\"?")),
-                None => complaint
-                    .mend("name it in stripes, yarns, palette, warp, weft or the chart's file, or leave it out"),
-            });
-        }
-    }
-    let own = yarn::resolve("yarn", first, &base.yarn)?;
-    let behind = yarn::said_over_base(first, &base.yarn);
-    let path = |name: &String| format!("yarns.{name}");
-    let of = |name: &String| match (others.get(name), base.yarns.get(name)) {
-        (Some(other), known) => {
-            of_the_first(&path(name), other)?;
-            let behind = known.map_or_else(|| behind.clone(), |known| yarn::said_over_base(known, &behind));
-            yarn::resolve(&path(name), other, &behind)
-        }
-        (None, Some(known)) => yarn::resolve(&path(name), &yarn::said_over_base(first, known), &base.yarn),
-        (None, None) => Ok(own.clone()),
-    };
-    let found = names.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-    let mut found = if found.is_empty() { vec![own] } else { found };
-    let colors = found.iter().map(|(_, color)| *color).collect();
-    let first = found.remove(0).0;
-    Ok((Yarns::new(first, found.into_iter().map(|(card, _)| card)), colors))
-}
-
-/// What only the scene's first yarn says.
-fn of_the_first(path: &str, text: &YarnText) -> Result<(), Complaint> {
-    let keys = [
-        ("preset", text.preset.is_some()),
-        ("card", text.card.is_some()),
-        ("mass_damping", text.mass_damping.is_some()),
-        ("stiffness_damping", text.stiffness_damping.is_some()),
-    ];
-    match keys.iter().find(|(_, given)| *given) {
-        Some((key, _)) => Err(Complaint::new(format!("{path}.{key}"), format!("{key} of one yarn among others"))
-            .why("it is that of the whole fabric")
-            .mend(format!("give {key} in [yarn]"))),
-        None => Ok(()),
-    }
 }

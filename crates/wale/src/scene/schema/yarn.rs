@@ -33,6 +33,13 @@ pub struct YarnText {
     /// The card of a fabric that `wale fit` has fitted, in place of a preset: the numbers of its yarns and contacts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub card: Option<String>,
+    /// What reports call one of the other yarns; the name that the chart or the weave gives it if left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Of one of the other yarns: the names of those that run together as this one, as in plating or where two are held
+    /// together; the first is the one that is seen. Its numbers follow from theirs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub together: Option<Vec<String>>,
     /// Mass per length of the whole yarn, or its count: tex, denier, Nm, Ne.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub linear_density: Option<Quantity<LinearDensity, Positive>>,
