@@ -5,7 +5,7 @@ use wale::measure::Census;
 use wale::record::{Checkpoints, Frames};
 
 use crate::arguments::Check;
-use crate::commands::inspect::yarns_and_flaws;
+use crate::commands::inspect::{remarks, yarns_and_flaws};
 use crate::commands::topology::topology;
 use crate::exit::Failure;
 use crate::opened::OpenedScene;
@@ -57,9 +57,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
         1e3 * census.mass_kg
     )?;
     yarns_and_flaws(&census, arguments.longest_float)?;
-    for (line, what) in opened.scene.structure.remarks() {
-        say!("  line {line:<4} {what}")?;
-    }
+    remarks(&opened.scene.structure)?;
     say!(
         "  run      {} s, {} frames, steps of at most {} ms",
         plan.duration,

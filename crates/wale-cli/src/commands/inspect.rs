@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use wale::measure::{Census, Shape, shadow_area};
 use wale::model::{Frame, Network};
+use wale::pattern::Structure;
 use wale::record::{RunReader, Status};
 
 use crate::arguments::{FrameChoice, Inspect};
@@ -75,6 +76,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
         1e3 * census.mass_kg
     )?;
     yarns_and_flaws(&census, arguments.longest_float)?;
+    remarks(&scene.structure)?;
     let [x, y, z] = shape.extent_m.map(|side| 1e3 * side);
     say!("  size     {x:.1} × {y:.1} × {z:.1} mm")?;
     say!("  shadow   {:.2} cm² from straight above", 1e4 * shadow)?;
@@ -121,6 +123,14 @@ pub fn yarns_and_flaws(census: &Census, longest_float: u32) -> Result<(), Failur
             "  floats   {long} pass more than {longest_float} stitches, the longest {}",
             census.floats.first().copied().unwrap_or(0)
         )?;
+    }
+    Ok(())
+}
+
+/// Prints what was unusual in the file that the fabric was read from.
+pub fn remarks(structure: &Structure) -> Result<(), Failure> {
+    for (line, what) in structure.remarks() {
+        say!("  line {line:<4} {what}")?;
     }
     Ok(())
 }
