@@ -89,6 +89,7 @@ fn bad_charts_and_drafts_are_told_with_their_place() {
         ("hook-never-released.k", ["released.k:3:", "`releasehook"]),
         ("stacked.k", ["stacked.k:68:", "65"]),
         ("no-magic.k", ["no-magic.k:1:", ";!knitout-2"]),
+        ("cable-of-two-carriers.k", ["carriers.k:23:", "the one of line 20"]),
     ] {
         assert_fails(&check("knitout", name, chart("file", name)), 3, &words);
     }

@@ -5,6 +5,7 @@
 //! from the front, loops made on the back bed purls.
 
 mod beds;
+mod cables;
 mod graph;
 mod machine;
 mod program;
