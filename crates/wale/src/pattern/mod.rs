@@ -27,6 +27,6 @@ pub mod working;
 pub use chart::{Chart, ChartError};
 pub use increase::{Part, Parts};
 pub use remark::Remark;
-pub use stitch::{Lean, Stitch};
+pub use stitch::{Lean, NotHeld, Stitch};
 pub use structure::{Program, Structure};
 pub use working::{Side, Working};
