@@ -89,6 +89,7 @@ fn bad_charts_and_drafts_are_told_with_their_place() {
         ("hook-never-released.k", ["released.k:3:", "`releasehook"]),
         ("stacked.k", ["stacked.k:68:", "65"]),
         ("no-magic.k", ["no-magic.k:1:", ";!knitout-2"]),
+        ("cable-of-two-carriers.k", ["carriers.k:23:", "the one of line 20"]),
     ] {
         assert_fails(&check("knitout", name, chart("file", name)), 3, &words);
     }
@@ -96,13 +97,13 @@ fn bad_charts_and_drafts_are_told_with_their_place() {
     let output = check("knitout", "empty-needles.k", chart("file", "empty-needles.k"));
     assert_succeeds(&output);
     let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), told(&output));
-    assert!(said.contains("f1 was empty when it was knitted"), "{said}");
+    assert!(said.contains("line 8    f1 was empty when it was knitted, as were 1 after it"), "{said}");
     for (name, code, words) in [
         ("color-out-of-range.wif", 3, ["range.wif:18:", "0,0,1000"]),
         ("two-values-for-one-thread.wif", 3, ["thread.wif:24:", "[THREADING]"]),
         ("four-billion-threads.wif", 4, ["threads.wif:12:", "4000000000"]),
-        ("utf16.wif", 3, ["utf16.wif", "UTF-16"]),
-        ("no-sections.wif", 3, ["no-sections.wif", "[WIF]"]),
+        ("utf16.wif", 3, ["utf16.wif:1:", "UTF-16"]),
+        ("no-sections.wif", 3, ["no-sections.wif:1:", "[WIF]"]),
     ] {
         assert_fails(&check("wif", name, weave(name)), code, &words);
     }
@@ -117,6 +118,33 @@ fn bad_charts_and_drafts_are_told_with_their_place() {
         ("rgb.png", 3, ["bad.toml", "#c03020"]),
     ] {
         assert_fails(&check("image", name, format!("{}{palette}\n", chart("image", name))), code, &words);
+    }
+}
+
+/// Lengths of a draft that a fabric does not take are no error, but worth a word wherever the draft is opened.
+#[test]
+fn what_is_unusual_in_a_draft_is_told_with_its_line() {
+    let workshop = Workshop::new();
+    let name = "lengths-passed-over.wif";
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../wale/tests/corpus/wif");
+    fs::copy(corpus.join(name), workshop.path(name)).unwrap();
+    let text = format!(
+        "schema = 1\n[yarn]\nlinear_density = \"20 tex\"\ndiameter = \"0.2 mm\"\n[fabric.weave]\nfile = \"{name}\"\n\
+         end_spacing = \"1 mm\"\n[simulation]\nduration = \"1 ms\"\n"
+    );
+    fs::write(workshop.path("draft.toml"), text).unwrap();
+    let (scene, run) = (workshop.text("draft.toml"), workshop.text("draft.run"));
+    for arguments in [&["check", &scene][..], &["inspect", &scene], &["run", &scene, "--out", &run]] {
+        let output = wale(arguments);
+        assert_succeeds(&output);
+        let said = format!("{}{}", String::from_utf8_lossy(&output.stdout), told(&output));
+        for words in [
+            "line 8    [WARP] has no Units, so that its spacing is passed over",
+            "line 12   the threads of [WEFT] are not evenly spaced",
+            "line 13   thickness of [WEFT] is passed over",
+        ] {
+            assert!(said.contains(words), "{arguments:?} does not say `{words}`: {said}");
+        }
     }
 }
 

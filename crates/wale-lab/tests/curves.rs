@@ -1,8 +1,12 @@
 //! Tables of instruments become curves, or one error that says what to do.
 
+#[path = "../../wale/tests/shared/mod.rs"]
+mod shared;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use shared::shared;
 use wale_lab::curve::{
     ColumnName, CurveError, Decimal, Delimiter, LoopCurve, Meaning, Request, Specimen, StretchCurve, Table, TableFormat,
 };
@@ -279,11 +283,7 @@ fn loops_that_cannot_be_are_refused() {
 
 #[test]
 fn the_measured_curves_of_the_folder_are_read() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/knit-tensile-singal2024/binned.csv");
-    if !path.exists() {
-        eprintln!("SKIPPED: {} is not there", path.display());
-        return;
-    }
+    let Some(path) = shared("knit-tensile-singal2024/binned.csv") else { return };
     let table = Table::read(&path, TableFormat::default()).unwrap();
     let word = |head: &str, word: &str| (head.to_owned(), word.to_owned());
     let request = Request {

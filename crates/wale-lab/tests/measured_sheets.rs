@@ -1,18 +1,18 @@
 //! The ten measured sheets of [Wang2011], by the paper's law of a thin shell and by the one that stiffens.
 
-use std::collections::BTreeMap;
-use std::path::Path;
+#[path = "../../wale/tests/shared/mod.rs"]
+mod shared;
 
+use std::collections::BTreeMap;
+
+use shared::shared;
 use wale_lab::shell::membrane_fit::{MeasuredStretch, MembraneFitSettings, MembraneLaw, StretchTest, fit_membrane};
 use wale_lab::shell::{StretchCurve, StretchPoint};
 
 #[test]
 fn ten_measured_sheets() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sheet-materials-wang2011");
-    let Ok(text) = std::fs::read_to_string(folder.join("wang2011_arcsim_uniaxial.csv")) else {
-        eprintln!("SKIPPED: {} is not there", folder.display());
-        return;
-    };
+    let Some(path) = shared("sheet-materials-wang2011/wang2011_arcsim_uniaxial.csv") else { return };
+    let text = std::fs::read_to_string(path).unwrap();
     let mut fabrics: BTreeMap<&str, Vec<StretchCurve>> = BTreeMap::new();
     for line in text.lines() {
         let fields: Vec<&str> = line.split(',').collect();

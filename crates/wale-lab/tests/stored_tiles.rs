@@ -1,7 +1,9 @@
 //! Tiles of an independent simulator are read and come to rest. Skipped, and said so, where `../shared/data` is not there.
 
-use std::path::{Path, PathBuf};
+#[path = "../../wale/tests/shared/mod.rs"]
+mod shared;
 
+use shared::shared;
 use wale::energy::ContactReading;
 use wale_lab::yarn_tile::{
     CoarseDeformation, EquilibriumSettings, RestShapeSettings, RodMaterial, TileSolver, YarnTile, contact_radius,
@@ -9,12 +11,8 @@ use wale_lab::yarn_tile::{
 };
 
 fn pattern(name: &str) -> Option<YarnTile> {
-    let folder: PathBuf = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/yarn-tiles-madypg");
-    let path = folder.join(name);
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        eprintln!("SKIPPED: {} is not there", path.display());
-        return None;
-    };
+    let path = shared(&format!("yarn-tiles-madypg/{name}"))?;
+    let text = std::fs::read_to_string(path).unwrap();
     Some(read_pattern(name, &text).unwrap_or_else(|error| panic!("{error}")))
 }
 

@@ -5,12 +5,16 @@ mod cards;
 use std::collections::BTreeSet;
 
 use cards::cards;
+use wale::contact::Compression;
 use wale::dynamics::system::System;
-use wale::model::{FabricCard, KnitCard, LoopProportions, Network, NodeId, PassKind, WovenCard, YarnCard, YarnId};
+use wale::fabric::Coordinates;
+use wale::model::{
+    FabricCard, KnitCard, LoopProportions, Network, NodeId, PassId, PassKind, WovenCard, YarnCard, YarnId, Yarns,
+};
 use wale::pattern::symbols::{default_legend, read_symbols};
 use wale::pattern::weave::peirce::geometry;
 use wale::pattern::weave::{Draft, Woven};
-use wale::pattern::{Chart, Side, Working, knit};
+use wale::pattern::{Chart, Side, Stitch, Working, knit};
 
 fn charts() -> Vec<Chart> {
     vec![
@@ -299,4 +303,31 @@ fn an_end_that_is_out_is_held_where_the_last_contact_was_that_it_left() {
     expected[node(passes.end - 1)] = network.position[node(passes.end - 3)];
     assert!(expected != network.position);
     assert_eq!(network.places_held(), expected);
+}
+
+#[test]
+fn a_stack_is_counted_from_the_loop_that_was_worked_on_whichever_side_it_lies() {
+    let (yarn, card) = cards();
+    for name in ["k2tog", "p2tog"] {
+        let decrease = Stitch::named(name).unwrap();
+        let chart = Chart::new(vec![vec![Stitch::Knit; 2], vec![decrease], vec![Stitch::Knit]]).unwrap();
+        let network = knit::fabric(&chart, Working::default(), &card);
+        let coordinates = Coordinates::new(&network);
+        let compression =
+            Compression::new(&network, &Yarns::from(&yarn), &FabricCard::Knit(card.clone()), &coordinates);
+        let stacks = (0..network.node_count()).map(|node| network.stack(NodeId::new(node)));
+        let deep: Vec<&[PassId]> = stacks.filter(|stack| stack.len() == 3).collect();
+        assert_eq!(deep.len(), compression.parallel().len(), "{name}");
+        let mut behind = 0;
+        for (stack, (contact, [nearer, beyond])) in deep.iter().zip(compression.parallel()) {
+            // The worked loop differs in kind from the two that it is worked into, which are alike.
+            let kind = |pass: PassId| network.pass_kind[pass.index()];
+            let at_back = kind(stack[0]) == kind(stack[1]);
+            let [worked, last] = if at_back { [stack[2], stack[0]] } else { [stack[0], stack[2]] };
+            assert_eq!((*nearer, *beyond), (stack[1], last), "{name}");
+            assert_eq!(compression.contact_of(worked), Some(contact - 1), "{name}");
+            behind += usize::from(at_back);
+        }
+        assert!(behind > 0 && behind < deep.len(), "{name}: the worked loop lies in front of some, behind others");
+    }
 }

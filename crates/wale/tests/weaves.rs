@@ -1,12 +1,15 @@
 //! Woven fabrics against known answers.
 
-use std::path::{Path, PathBuf};
+mod shared;
+
+use std::path::Path;
 
 use glam::DVec3;
+use shared::shared;
 use wale::dynamics::system::System;
 use wale::dynamics::workspace::Workspace;
 use wale::measure::Census;
-use wale::model::{Network, NodeId, YarnRole};
+use wale::model::{Network, NodeId, SegmentKind, YarnId, YarnRole};
 use wale::pattern::weave::read_wif;
 use wale::scene::Scene;
 use wale::simulation::{Simulation, Start};
@@ -87,6 +90,42 @@ fn pulled_along_the_warp_it_is_as_stiff_as_its_ends() {
     assert!((force.abs() / expected - 1.0).abs() < 1e-6, "{force}");
 }
 
+/// Yarn between two crossings of a warp end is taken away: where it interlaces, its picks touch at Peirce's distance; where it floats,
+/// they are pushed together under it, until a barrier keeps the yarn from vanishing.
+#[test]
+fn neighbours_touch_where_a_yarn_interlaces_and_not_under_a_float() {
+    let scene = scene(
+        "pattern = \"twill 2/2\"\nends = 8\npicks = 8\nend_spacing = \"0.5 mm\"\npick_spacing = \"0.5 mm\"\nselvedge = \"cut\"",
+        "",
+    );
+    let card = scene.fabric.woven().unwrap();
+    let (touching, vanishing) = (card.interlacing_spacing[0], card.float_spacing[0]);
+    assert!(vanishing < 0.7 * touching && touching < 0.5e-3, "{card:?}");
+    let network = network(&scene);
+    let system = System::new(&network, &scene.yarns, &scene.fabric);
+    let end = (0..network.yarn_count()).filter(|yarn| network.yarn_role[*yarn] == YarnRole::Warp).nth(3).unwrap();
+    let passes = network.yarn_passes(YarnId::new(end));
+    let spacing = |kind: SegmentKind, length: f64| {
+        let mut inside = passes.clone().skip(2).take(passes.len() - 5);
+        let first = inside.find(|pass| network.segment_kind[*pass] == kind).unwrap();
+        // All that comes after it goes along, so that no other segment changes.
+        let mut sliding = network.arc_length.clone();
+        let by = sliding[first + 1] - sliding[first] - length;
+        sliding[first + 1..passes.end].iter_mut().for_each(|u| *u -= by);
+        let q = system.coordinates.gather(&network.position, &sliding);
+        system.energies(&q, &mut Workspace::default()).iter().find(|(name, _)| *name == "spacing").unwrap().1
+    };
+    // −k d (x − 1)² ln x at half the distance, above what the free ends store.
+    let at_rest = spacing(SegmentKind::Interlacing, 0.5e-3);
+    let expected = |distance: f64| scene.fabric.spacing_stiffness() * distance * 0.25 * 2.0f64.ln();
+    let stored = spacing(SegmentKind::Interlacing, 0.5 * touching) - at_rest;
+    assert!((stored / expected(touching) - 1.0).abs() < 1e-9, "{stored}");
+    assert_eq!(spacing(SegmentKind::Interlacing, 1.01 * touching), at_rest);
+    assert_eq!(spacing(SegmentKind::Float, 0.75 * touching), at_rest, "nothing holds the picks under a float apart");
+    let stored = spacing(SegmentKind::Float, 0.5 * vanishing) - at_rest;
+    assert!((stored / expected(vanishing) - 1.0).abs() < 1e-9, "{stored}");
+}
+
 #[test]
 fn a_strip_bends_as_its_warp_does() {
     // A cantilever of 60 picks under a small gravity: w L⁴/8 n EI.
@@ -150,10 +189,7 @@ fn different_yarns_have_their_own_mass_and_stiffness() {
 
 #[test]
 fn collected_drafts_are_read() {
-    let Some(folder) = std::env::var_os("WALE_DATA").map(|data| PathBuf::from(data).join("wif")) else {
-        println!("skipped: WALE_DATA does not name a folder with collected drafts");
-        return;
-    };
+    let Some(folder) = shared("wif") else { return };
     let mut count = 0;
     for entry in std::fs::read_dir(&folder).unwrap() {
         let path: &Path = &entry.unwrap().path();
@@ -163,11 +199,11 @@ fn collected_drafts_are_read() {
             Ok(wif) => {
                 let [warp, weft] = wif.draft.longest_floats();
                 println!(
-                    "{}: {} × {}, floats {warp} {weft}, {} remarks",
+                    "{}: {} × {}, floats {warp} {weft}, {:?}",
                     path.display(),
                     wif.draft.ends(),
                     wif.draft.picks(),
-                    wif.remarks.len()
+                    wif.remarks
                 );
             }
             Err(error) => panic!("{}: {error}", path.display()),

@@ -45,6 +45,9 @@ pub fn run(arguments: &Run) -> Result<(), Failure> {
             output::grouped(network.node_count() as u64),
             out.display()
         ));
+        for (line, what) in scene.scene.structure.remarks() {
+            output::note(&format!("  line {line:<4} {what}"));
+        }
     }
     let (yarns, card) = (scene.scene.yarns, scene.scene.fabric);
     RunLoop { simulation, run, yarns, card, signals, quiet: arguments.manner.quiet }.go()

@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn every_vertex_is_drawn_once() {
         for tile in [basket(), stockinette()] {
-            let curves = drawn_curves(&tile, [3, 2]);
+            let curves = drawn_curves(&tile, [3, 2]).unwrap();
             let pieces: usize = curves.iter().map(|curve| (curve.points.len() - 1) / PIECES + 1).sum();
             assert_eq!(pieces, 6 * tile.vertex_count());
             for vertex in tile.repeated([3, 2]).unwrap().vertices() {

@@ -12,6 +12,7 @@ pub mod loops;
 pub mod named;
 mod places;
 mod plain;
+mod remark;
 mod repeat;
 mod rest_lengths;
 mod stacks;
@@ -25,6 +26,7 @@ pub mod working;
 
 pub use chart::{Chart, ChartError};
 pub use increase::{Part, Parts};
-pub use stitch::{Lean, Stitch};
+pub use remark::Remark;
+pub use stitch::{Lean, NotHeld, Stitch};
 pub use structure::{Program, Structure};
 pub use working::{Side, Working};

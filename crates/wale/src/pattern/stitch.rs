@@ -54,7 +54,7 @@ pub enum Stitch {
 }
 
 /// Names as knitters write them, seen by whoever works the row, with the symbols of charts.
-const NAMES: [(&str, char, Stitch); 30] = {
+const NAMES: [(&str, char, Stitch); 35] = {
     use Lean::{Centre, Left, Right};
     use Part::{Knit as K, Purl as P, YarnOver as O};
     use Stitch as S;
@@ -84,7 +84,13 @@ const NAMES: [(&str, char, Stitch); 30] = {
         ("tuck", 'T', S::Tuck),
         // Other names of the same.
         ("skp", '\\', S::together(true, 2, Left)),
+        ("skpo", '\\', S::together(true, 2, Left)),
+        // The order of the two loops that lie under the first is not told apart.
+        ("sk2p", '<', S::together(true, 3, Left)),
         ("s2kp", '^', S::together(true, 3, Centre)),
+        ("s2kpo", '^', S::together(true, 3, Centre)),
+        ("s2kp2", '^', S::together(true, 3, Centre)),
+        ("slip", 'V', S::Slip { in_front: false }),
         ("m1l", 'm', S::Lifted { knit: true }),
         ("m1r", 'm', S::Lifted { knit: true }),
         ("sl1yo", 'T', S::Tuck),
@@ -92,6 +98,47 @@ const NAMES: [(&str, char, Stitch); 30] = {
         ("purl", 'p', S::Purl),
     ]
 };
+
+/// What knitters work, but contacts between neighbours cannot hold.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum NotHeld {
+    /// Loops that cross.
+    Cable,
+    /// A loop with a half turn.
+    Twisted,
+}
+
+impl fmt::Display for NotHeld {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Cable => {
+                "a cable: loops that cross cannot be held by contacts between neighbours; \
+                 work its stitches without crossing them"
+            }
+            Self::Twisted => {
+                "a twisted stitch: the half turn of its loop cannot be held by contacts between neighbours; \
+                 work it through the front of the loop"
+            }
+        })
+    }
+}
+
+impl NotHeld {
+    /// What a knitter's name of a stitch means that is none of [`Stitch::all`]: `c4f`, `t2b`, `rt`, `k1tbl`.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        let name = name.trim().to_lowercase();
+        let without_digits = |text: &str| text.trim_start_matches(|c: char| c.is_ascii_digit()).to_owned();
+        if let Some(stitch) = name.strip_suffix("tbl").and_then(|stitch| stitch.strip_prefix(['k', 'p'])) {
+            return without_digits(stitch).trim().is_empty().then_some(Self::Twisted);
+        }
+        let crossed = name.strip_prefix(['c', 't']).is_some_and(|rest| {
+            let side = without_digits(rest);
+            side.len() < rest.len() && ["f", "b", "l", "r", "fp", "bp", "lp", "rp"].contains(&side.as_str())
+        });
+        (crossed || ["rt", "lt", "rc", "lc", "rpc", "lpc"].contains(&name.as_str())).then_some(Self::Cable)
+    }
+}
 
 impl Stitch {
     const fn together(knit: bool, loops: u8, lean: Lean) -> Self {
@@ -134,6 +181,16 @@ impl Stitch {
             Self::Lifted { knit } => Self::Lifted { knit: !knit },
             Self::Slip { in_front } => Self::Slip { in_front: !in_front },
             Self::YarnOver | Self::Tuck => self,
+        }
+    }
+
+    /// The same worked through the back of the loops, `tbl`: together they lean to the left. `None` where that twists what it
+    /// is drawn through; the half turn that it gives to loops worked together is left out.
+    #[must_use]
+    pub fn through_back_loops(self) -> Option<Self> {
+        match self {
+            Self::Together { knit, loops, lean: Lean::Right } => Some(Self::Together { knit, loops, lean: Lean::Left }),
+            _ => None,
         }
     }
 
@@ -217,6 +274,19 @@ impl fmt::Display for Stitch {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cables_and_twisted_stitches_are_known_by_name() {
+        for name in ["c4f", "C6B", "t3l", "c12r", "c4fp", "RT"] {
+            assert_eq!(NotHeld::named(name), Some(NotHeld::Cable), "{name}");
+        }
+        for name in ["ktbl", "k1tbl", "P1TBL", "k tbl", "k1 tbl"] {
+            assert_eq!(NotHeld::named(name), Some(NotHeld::Twisted), "{name}");
+        }
+        for name in ["", "c", "cf", "c4", "tbl", "k2togtbl", "t4x", "kfb"] {
+            assert_eq!(NotHeld::named(name), None, "{name}");
+        }
+    }
 
     #[test]
     fn names_and_symbols_are_told_apart() {

@@ -84,11 +84,12 @@ impl Structure {
         }
     }
 
-    /// What a program does that is unusual but can be knitted, with its line.
+    /// What is unusual in the program or the file of a draft, but can be made, with its line.
     pub fn remarks(&self) -> impl Iterator<Item = (usize, &str)> {
         let remarks = match self {
-            Self::Chart { .. } | Self::Woven(_) => &[][..],
+            Self::Chart { .. } => &[][..],
             Self::Machine(program) => &program.knitted.remarks,
+            Self::Woven(woven) => &woven.remarks,
         };
         remarks.iter().map(|remark| (remark.line, remark.what.as_str()))
     }

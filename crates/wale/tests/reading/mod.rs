@@ -148,6 +148,8 @@ pub fn knitout(bytes: &[u8]) -> bool {
 pub fn wif(bytes: &[u8]) -> bool {
     match read_wif(bytes) {
         Ok(wif) => {
+            let text = text(bytes);
+            assert!(wif.remarks.iter().all(|remark| line_exists(&text, remark.line)));
             let draft = wif.draft;
             if draft.ends().saturating_mul(draft.picks()) <= SMALL {
                 let network = Woven::new(draft.clone(), [1e-3; 2]).network([1e-3; 2]);

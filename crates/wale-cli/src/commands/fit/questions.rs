@@ -6,7 +6,7 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use wale_lab::yarn_fit::journal::Entry;
-use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, Question, YarnProblem, fingerprint};
+use wale_lab::yarn_fit::problem::{Answers, Evaluation, Here, Question, fingerprint};
 
 use super::yarn::{ANSWERS, open, problems};
 use crate::exit::{Code, Failure};

@@ -57,6 +57,72 @@ fn a_yarn_beside_its_node_pulls_from_where_it_lies() {
     assert!((force[2] + 2.0 * 2.0 * (length - 1.0) * 0.5 / length).abs() < 1e-15, "{force:?}");
 }
 
+/// A yarn over a node: the direction it runs in, across which both its sides rise (+1) or fall (−1) by half their length, and
+/// their tensions. Of equal tensions it pulls with just one of them.
+struct Over {
+    along: [f64; 2],
+    rise: f64,
+    tensions: [f64; 2],
+}
+
+/// Compressions of a stack of yarns over one node, from that of the loop that was worked on.
+fn pressed(yarns: &[Over]) -> Vec<f64> {
+    let blocks = 1 + 2 * yarns.len();
+    // Sliding coordinates of the node's passes stand behind its block and the blocks of the ends.
+    let mut q = vec![0.0; BLOCK * blocks + yarns.len()];
+    let mut neighbours = Vec::new();
+    for (k, yarn) in yarns.iter().enumerate() {
+        let ends = [1 + 2 * k, 2 + 2 * k];
+        for ((end, sign), tension) in ends.into_iter().zip([-1.0, 1.0]).zip(yarn.tensions) {
+            // Stretch stiffness 1: length over rest is 1 + T.
+            let (flat, length) = (sign * 0.75f64.sqrt(), 1.0 + tension);
+            let x = [flat * yarn.along[0] * length, flat * yarn.along[1] * length, 0.5 * yarn.rise * length];
+            q[BLOCK * end..BLOCK * end + 3].copy_from_slice(&x);
+            q[BLOCK * end + 3] = sign;
+        }
+        let slot = [BLOCK * ends[0] + 3, BLOCK * blocks + k, BLOCK * ends[1] + 3].map(|slot| slot as u32);
+        neighbours.push(Neighbours { block: [ends[0] as u32, 0, ends[1] as u32], slot, ..Neighbours::default() });
+    }
+    let count = yarns.len();
+    let stack = Stack { yarns: std::array::from_fn(|k| neighbours[k.min(count - 1)]), count };
+    let strands = vec![Strand { stiffness: [1.0; 2], crimp_height: 0.0 }];
+    let compression = Compression { strands, stacks: vec![stack], stacked: count - 1, ..Compression::default() };
+    let mut out = Vec::new();
+    compression.evaluate(&q, &mut out);
+    out
+}
+
+#[test]
+fn a_stack_is_pressed_along_the_pull_of_the_loop_that_was_worked() {
+    let over = |along: [f64; 2], rise: f64, tension: f64| Over { along, rise, tensions: [tension; 2] };
+    let assert_pressed = |yarns: &[Over], expected: &[f64], tolerance: f64| {
+        let found = pressed(yarns);
+        assert_eq!(found.len(), expected.len());
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < tolerance;
+        assert!(found.iter().zip(expected).all(near), "{found:?}, not {expected:?}");
+    };
+    // The worked loop pulls down with 4 over two that pull up with 1 and with 3: each contact bears what lies beyond it.
+    let (child, light, heavy) =
+        (|| over([0.0, 1.0], -1.0, 4.0), || over([1.0, 0.0], 1.0, 1.0), || over([1.0, 0.0], 1.0, 3.0));
+    assert_pressed(&[child(), light(), heavy()], &[4.0, 3.0], 1e-12);
+    assert_pressed(&[child(), heavy(), light()], &[4.0, 1.0], 1e-12);
+    // Seen from behind, and with a yarn that runs the other way, it is the same stack.
+    let turned = |yarn: Over| Over { rise: -yarn.rise, ..yarn };
+    assert_pressed(&[turned(child()), turned(light()), turned(heavy())], &[4.0, 3.0], 1e-12);
+    assert_pressed(&[child(), over([-1.0, 0.0], 1.0, 1.0), heavy()], &[4.0, 3.0], 1e-12);
+    // One that is slack presses on none, but hands on.
+    assert_pressed(&[child(), over([1.0, 0.0], 1.0, 0.0), over([1.0, 0.0], 1.0, 4.0)], &[4.0, 4.0], 1e-12);
+    // What a yarn pulls along itself, or along those that it crosses, is held by friction and presses nothing.
+    let dragged = Over { along: [1.0, 0.0], rise: 1.0, tensions: [0.5, 1.5] };
+    assert_pressed(&[child(), dragged, heavy()], &[4.0, 3.0], 2e-3);
+    // Nothing pulls: nothing is pressed.
+    assert_pressed(
+        &[over([0.0, 1.0], -1.0, 0.0), over([1.0, 0.0], 1.0, 0.0), over([1.0, 0.0], 1.0, 0.0)],
+        &[0.0; 2],
+        1e-12,
+    );
+}
+
 #[test]
 fn crimp_presses_a_flat_weave() {
     // A flat crossing: segments of 2 m that were 1.9 m long, both to the other side, of both yarns.

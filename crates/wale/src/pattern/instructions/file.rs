@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ops::Range;
 
+use super::alternate::{self, Alternates};
 use super::lexer::Line;
 use super::parts::{Row, work};
 use super::row;
@@ -24,11 +25,11 @@ enum Body {
 }
 
 /// A range of rows with one body.
-struct Rows {
-    first: u64,
-    last: u64,
-    body: usize,
-    place: Range<usize>,
+pub(super) struct Rows {
+    pub first: u64,
+    pub last: u64,
+    pub body: usize,
+    pub place: Range<usize>,
 }
 
 /// All that the lines have said so far.
@@ -41,6 +42,9 @@ struct Reader {
     rows: Vec<Rows>,
     /// The last row so far.
     last: u64,
+    alternates: Alternates,
+    /// Rows that are said to be a repeat, without a count.
+    open_repeat: Option<(u64, u64, Range<usize>)>,
     /// The first line that says its side: the row's number, and the side.
     side: Option<(u64, Side)>,
     yarns: Yarns,
@@ -102,7 +106,7 @@ impl Reader {
         if *self.round.get_or_insert(round) == round { Ok(()) } else { Err(line.error(Reason::MixedWorking)) }
     }
 
-    /// `Rows 1, 3 and 5-7 (RS): …`.
+    /// `Rows 1, 3 and 5-7 (RS): …`, `Row 2 (WS) and all WS rows: …`.
     fn row(&mut self, line: &mut Line<'_>, round: bool) -> Parsed<()> {
         self.work_in(line, round)?;
         line.advance(1);
@@ -114,11 +118,17 @@ impl Reader {
             self.rows.push(Rows { first, last, body, place });
             self.last = self.last.max(last);
             line.row.get_or_insert(first);
-            if !(line.take_sign(',') | line.take_word(&["and"])) {
+            if self.alternate_rows(line, round)? || !(line.take_sign(',') | line.take_word(&["and"])) {
                 break;
             }
         }
-        if line.take_sign('(') {
+        if line.sign() == Some('(') && line.word_after(1) == Some("and") {
+            line.advance(1);
+            self.alternate_rows(line, round)?;
+            if !line.take_sign(')') {
+                return Err(line.expected("`)`"));
+            }
+        } else if line.take_sign('(') {
             let place = line.place();
             let side = match line.word() {
                 Some("rs") => Side::RightSide,
@@ -132,6 +142,7 @@ impl Reader {
             for index in first_of_line..self.rows.len() {
                 self.check_side(line, index, side, round, &place)?;
             }
+            self.alternate_rows(line, round)?;
         }
         if !line.take_sign(':') {
             return Err(line.expected("`:`"));
@@ -151,6 +162,29 @@ impl Reader {
         };
         self.bodies.push(parsed);
         Ok(())
+    }
+
+    /// `and all WS rows` behind the number of a row, if that is what stands here.
+    fn alternate_rows(&mut self, line: &mut Line<'_>, round: bool) -> Parsed<bool> {
+        let comma = usize::from(line.sign() == Some(','));
+        if line.word_after(comma) != Some("and") || !matches!(line.word_after(comma + 1), Some("all" | "every")) {
+            return Ok(false);
+        }
+        line.advance(comma + 1);
+        let start = line.place().start;
+        let called = alternate::called(line)?;
+        let place = start..line.end_of_last();
+        let index = self.rows.len() - 1;
+        let Rows { last: first, body, .. } = self.rows[index];
+        if let Some(side) = called.side {
+            self.check_side(line, index, side, round, &place)?;
+        }
+        if called.even.is_some_and(|even| even != (first % 2 == 0)) {
+            let rows = line.source(&place);
+            return Err(line.error_at(place, Reason::NotAlternate { rows, row: first }));
+        }
+        self.alternates.say(first, body);
+        Ok(true)
     }
 
     /// Sides alternate from the first one that is stated; in the round there is only the right side.
@@ -189,11 +223,17 @@ impl Reader {
         range(line)
     }
 
-    /// `Rep rows 1-4 5 more times`: appends rows.
+    /// `Rep rows 1-4 5 more times`: appends rows. `Rep rows 1-4`: all there are, as often as the scene says.
     fn append(&mut self, line: &mut Line<'_>) -> Parsed<()> {
         let place = line.place();
         line.advance(1);
         let (first, last) = self.earlier_rows(line)?;
+        let pattern = line.take_word(&["for"]) && line.take_word(&["pattern", "patt", "pat"]);
+        line.skip_separators();
+        if pattern || line.is_empty() {
+            self.open_repeat = Some((first, last, place.start..line.end_of_last()));
+            return if line.is_empty() { Ok(()) } else { Err(line.expected("the end of the line")) };
+        }
         let times = if line.take_word(&["once"]) {
             1
         } else if line.take_word(&["twice"]) {
@@ -212,6 +252,7 @@ impl Reader {
             return Err(line.expected("the end of the line"));
         }
         // Counts are at most 16 million each, their product far below 2⁶⁴; `finish` limits the sum.
+        self.close_pair();
         let before = self.last;
         let after = before.saturating_add((last - first + 1) * times);
         self.last = after;
@@ -220,9 +261,22 @@ impl Reader {
         Ok(())
     }
 
+    /// Rows come in pairs: the second row of the last one, where it is among the alternate rows.
+    fn close_pair(&mut self) {
+        let row = self.last + 1;
+        if row.is_multiple_of(2)
+            && let (Some(body), Some(last)) = (self.alternates.body_of(row), self.rows.last())
+        {
+            let place = last.place.clone();
+            self.rows.push(Rows { first: row, last: row, body, place });
+            self.last = row;
+        }
+    }
+
     fn finish(mut self, columns: Option<usize>) -> Parsed<Written> {
         let nowhere = |reason| InstructionError::new(0..0, None, reason);
-        self.rows.sort_by_key(|rows| rows.first);
+        self.close_pair();
+        self.rows = self.alternates.filled(std::mem::take(&mut self.rows));
         let mut count = 0_u64;
         for rows in &self.rows {
             let reason = if rows.first <= count {
@@ -237,6 +291,12 @@ impl Reader {
         }
         if count == 0 {
             return Err(nowhere(Reason::NoRows));
+        }
+        if let Some((first, last, place)) = &self.open_repeat
+            && (*first, *last) != (1, count)
+        {
+            let reason = Reason::OpenRepeat { first: *first, last: *last, count };
+            return Err(InstructionError::new(place.clone(), None, reason));
         }
         let total = self.cast_on.or(columns.map(|columns| columns as u64));
         let total = total.ok_or_else(|| nowhere(Reason::NoCastOn))?;

@@ -57,6 +57,16 @@ impl<'a> Line<'a> {
         self.at == self.tokens.len()
     }
 
+    /// Where it is, for [`Self::back_to`].
+    pub(super) fn mark(&self) -> usize {
+        self.at
+    }
+
+    /// Goes back to where it was.
+    pub(super) fn back_to(&mut self, mark: usize) {
+        self.at = mark;
+    }
+
     pub(super) fn word(&self) -> Option<&str> {
         self.word_after(0)
     }

@@ -11,15 +11,20 @@
 //! Row 13: *k2tog 3 times, [yo, k1] 6 times, k2tog 3 times*
 //! Row 14: (k1, yo, k1) in next st, sl1 wyif, p to end
 //! Row 15: with B, k                           another yarn, from here on
-//! Rep rows 1-13 3 more times                  appends 39 rows
+//! Row 16: sl1, k2tog, psso, p2tog tbl, k to end
+//! Rep rows 1-16 3 more times                  appends 48 rows
 //! Bind off
 //! ```
+//!
+//! `Row 2 and all WS rows: purl` says every second row from there on that no line says, and the last one if the text ends with the
+//! row before it. `Rep rows 1-4` without a count, of all the rows that there are, says only that they are a repeat.
 //!
 //! `Rnd` in place of `Row` works in the round. Rows are numbered from 1 without gaps, in any order. Right-side rows
 //! run right to left, wrong-side rows left to right as seen from the wrong side, so there a knit is a purl from the
 //! front. A row works as many stitches as the row before it leaves. A row that is said to repeat another is *worked* like
 //! it, from whichever side it then is.
 
+mod alternate;
 mod file;
 mod lexer;
 mod parts;
@@ -35,7 +40,7 @@ use thiserror::Error;
 
 use super::chart::{Chart, ChartError};
 use super::increase::Parts;
-use super::stitch::Stitch;
+use super::stitch::{NotHeld, Stitch};
 use super::working::Working;
 
 pub(crate) use lexer::shortened;
@@ -130,6 +135,14 @@ pub enum InstructionErrorReason {
     UnknownStitch {
         /// The word.
         word: String,
+    },
+    /// A stitch that the model cannot hold.
+    #[error("`{word}` is {why}")]
+    NotHeld {
+        /// The stitch.
+        word: String,
+        /// What it is.
+        why: NotHeld,
     },
     /// A count of zero, or one too large.
     #[error("a count must be from 1 to {}, not `{found}`", Chart::MAX_LOOPS)]
@@ -237,6 +250,26 @@ pub enum InstructionErrorReason {
         first: u64,
         /// Last row to repeat.
         last: u64,
+    },
+    /// A repeat without a count that is not of all rows.
+    #[error(
+        "how often rows {first}–{last} are repeated must be said, `3 more times`, as they are not all of the {count} rows"
+    )]
+    OpenRepeat {
+        /// First row to repeat.
+        first: u64,
+        /// Last row to repeat.
+        last: u64,
+        /// All rows.
+        count: u64,
+    },
+    /// `and all even rows` beside an odd row, or the other way round.
+    #[error("`{rows}` would leave out row {row} itself")]
+    NotAlternate {
+        /// What the rows are called.
+        rows: String,
+        /// The row that is said with them.
+        row: u64,
     },
     /// Rows and the rows they repeat do not come out even.
     #[error("{rows} rows repeat {repeat} rows, which is no multiple")]

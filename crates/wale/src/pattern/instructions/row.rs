@@ -5,7 +5,7 @@ use super::parts::{Part, PartKind, Row};
 use super::yarns::Yarns;
 use super::{DEEPEST_NESTING, InstructionError, InstructionErrorReason as Reason};
 use crate::pattern::increase::{Part as Into, Parts};
-use crate::pattern::stitch::Stitch;
+use crate::pattern::stitch::{NotHeld, Stitch};
 
 type Parsed<T> = Result<T, InstructionError>;
 
@@ -162,30 +162,40 @@ fn repeat(line: &Line<'_>, parts: Vec<Part>, count: u64, times: u64, start: usiz
     }
 }
 
-/// `k`, `k2`, `knit 2 sts`, `k to end`, `purl to last 3 sts`, `knit across`.
+/// `k`, `k2`, `knit 2 sts`, `k to end`, `purl to last 3 sts`, `knit across`, `k2tog tbl`, `sl1, k1, psso`.
 fn stitches(line: &mut Line<'_>) -> Parsed<PartKind> {
+    if let Some(stitch) = passed_over(line) {
+        return Ok(PartKind::Stitches(stitch, times(line)?.unwrap_or(1)));
+    }
     let place = line.place();
-    let word = line.word().unwrap_or_default().to_owned();
-    let unknown = || Reason::UnknownStitch { word: line.source(&place) };
+    let whole = line.word().unwrap_or_default().to_owned();
+    let unknown = || {
+        let word = line.source(&place);
+        line.error(
+            NotHeld::named(&word)
+                .map_or(Reason::UnknownStitch { word: word.clone() }, |why| Reason::NotHeld { word, why }),
+        )
+    };
+    if line.sign_after(1) == Some('/') && whole.bytes().all(|b| b.is_ascii_digit()) {
+        return Err(crossing(line));
+    }
+    // `k2togtbl` is `k2tog tbl`.
+    let word = whole.strip_suffix("tbl").filter(|word| !word.is_empty()).unwrap_or(&whole);
     let (name, digits) = match word.find(|c: char| c.is_ascii_digit()) {
         // `k2tog` and its like have a digit of their own.
-        Some(at) if Stitch::named(&word).is_none() => word.split_at(at),
-        _ => (word.as_str(), ""),
+        Some(at) if Stitch::named(word).is_none() => word.split_at(at),
+        _ => (word, ""),
     };
-    let stitch = match name {
-        "knit" => Stitch::Knit,
-        "purl" => Stitch::Purl,
-        _ => Stitch::named(name).ok_or_else(|| line.error(unknown()))?,
-    };
-    if !digits.is_empty() {
-        if !digits.bytes().all(|b| b.is_ascii_digit()) {
-            return Err(line.error(unknown()));
-        }
-        let count = line.count(digits)?;
-        line.advance(1);
+    let stitch = Stitch::named(name).ok_or_else(unknown)?;
+    if !digits.bytes().all(|b| b.is_ascii_digit()) {
+        return Err(unknown());
+    }
+    let count = if digits.is_empty() { None } else { Some(line.count(digits)?) };
+    line.advance(1);
+    let stitch = through_back(line, stitch, word.len() < whole.len(), place.start)?;
+    if let Some(count) = count {
         return Ok(PartKind::Stitches(slipped(line, stitch)?, count));
     }
-    line.advance(1);
     if let Some(leave) = stretch(line)? {
         let (start, takes) = (place.start, stitch.takes() as u64);
         let one = Part { kind: PartKind::Stitches(stitch, 1), source: line.source(&place), place };
@@ -197,14 +207,103 @@ fn stitches(line: &mut Line<'_>) -> Parsed<PartKind> {
     let counted = line.word().is_some_and(|word| word.starts_with(|c: char| c.is_ascii_digit()));
     let count = if counted { line.number("a count")? } else { 1 };
     line.take_word(&["st", "sts", "stitch", "stitches"]);
+    let stitch = through_back(line, stitch, false, place.start)?;
     Ok(PartKind::Stitches(slipped(line, stitch)?, count))
 }
+
+/// `tbl`, as a word of its own or joined to the stitch: through the back of the loops.
+fn through_back(line: &mut Line<'_>, stitch: Stitch, joined: bool, start: usize) -> Parsed<Stitch> {
+    if !line.take_word(&["tbl"]) && !joined {
+        return Ok(stitch);
+    }
+    let place = start..line.end_of_last();
+    let twisted = || Reason::NotHeld { word: line.source(&place), why: NotHeld::Twisted };
+    stitch.through_back_loops().ok_or_else(|| line.error_at(place.clone(), twisted()))
+}
+
+/// `2/2 LC`, a cable by how many stitches cross how many.
+fn crossing(line: &mut Line<'_>) -> InstructionError {
+    let start = line.place().start;
+    line.advance(1);
+    while line.take_sign('/') {
+        line.advance(1);
+    }
+    line.advance(usize::from(line.word().is_some()));
+    let place = start..line.end_of_last();
+    line.error_at(place.clone(), Reason::NotHeld { word: line.source(&place), why: NotHeld::Cable })
+}
+
+/// `sl1, k1, psso`, `sl1-k2tog-psso`, `sl 2 knitwise, k1, p2sso`: decreases that pass slipped stitches over what is knitted.
+fn passed_over(line: &mut Line<'_>) -> Option<Stitch> {
+    let mark = line.mark();
+    let found = slip_knit_pass(line).and_then(Stitch::named);
+    if found.is_none() {
+        line.back_to(mark);
+    }
+    found
+}
+
+/// The name of a decrease that is written out.
+fn slip_knit_pass(line: &mut Line<'_>) -> Option<&'static str> {
+    fn hyphen_or_separators(line: &mut Line<'_>) {
+        line.take_sign('-');
+        line.skip_separators();
+    }
+    let slipped = counted(line, &["sl", "slip"])?;
+    line.take_word(&["st", "sts", "stitch", "stitches"]);
+    line.take_word(&["tog", "together"]);
+    line.take_word(NEEDLE_GOES_IN);
+    hyphen_or_separators(line);
+    let knitted =
+        if line.take_word(&["k2tog"]) { 2 } else { counted(line, &["k", "knit"]).filter(|count| *count == 1)? };
+    hyphen_or_separators(line);
+    if !line.take_word(&["psso", "p2sso"]) {
+        if !line.take_word(&["pass"]) {
+            return None;
+        }
+        while line.take_word(&["the", "both", "2", "two", "sl", "slip", "slipped", "st", "sts", "stitch", "stitches"]) {
+        }
+        if !line.take_word(&["over"]) {
+            return None;
+        }
+    }
+    match (slipped, knitted) {
+        (1, 1) => Some("skp"),
+        (1, 2) => Some("sk2p"),
+        (2, 1) => Some("s2kp"),
+        _ => None,
+    }
+}
+
+/// `sl1`, `slip 1`: how often a stitch of one of these names is worked, if it is said.
+fn counted(line: &mut Line<'_>, names: &[&str]) -> Option<u64> {
+    let word = line.word()?;
+    let name = word.trim_end_matches(|c: char| c.is_ascii_digit());
+    let digits = word[name.len()..].to_owned();
+    if !names.contains(&name) {
+        return None;
+    }
+    line.advance(1);
+    if !digits.is_empty() {
+        return digits.parse().ok();
+    }
+    let count = match line.word()? {
+        "1" | "one" => 1,
+        "2" | "two" => 2,
+        _ => return None,
+    };
+    line.advance(1);
+    Some(count)
+}
+
+/// How the needle goes into a stitch that is slipped.
+const NEEDLE_GOES_IN: &[&str] = &["purlwise", "pwise", "pw", "knitwise", "kwise", "kw"];
 
 /// `sl1 purlwise with yarn in front`, `sl1 wyif`: where the yarn passes. The other words say how the needle goes in,
 /// which leaves no trace in the fabric.
 fn slipped(line: &mut Line<'_>, stitch: Stitch) -> Parsed<Stitch> {
     let Stitch::Slip { mut in_front } = stitch else { return Ok(stitch) };
-    line.take_word(&["purlwise", "pwise", "pw", "knitwise", "kwise", "kw"]);
+    line.take_word(NEEDLE_GOES_IN);
     if line.take_word(&["wyif"]) {
         in_front = true;
     } else if line.take_word(&["wyib"]) {

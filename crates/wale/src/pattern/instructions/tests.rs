@@ -183,7 +183,7 @@ proptest! {
             prop::sample::select(vec![
                 "Cast on 8", "\nRow 1", "\nRow 2 (WS)", "\nRnds 1-2", ":", "*", "[", "]", "(", ")", ",", ";",
                 "k2", "p", "knit", "to end", "to last 2 sts", "rep from *", "3 times", "rep rows 1-2", "x",
-                "\nRep rows 1", "twice", "-", "with A", "yo", "kfb", "k2tog", "in next st", "sl1", "wyif", "m1", "99999999999999999999", "#", "×",
+                "\nRep rows 1", "twice", "-", "with A", "yo", "kfb", "k2tog", "in next st", "tbl", "psso", "c4f", "2/2 LC", "and all WS rows", "and every alternate row", "for pattern", "sl1", "wyif", "m1", "99999999999999999999", "#", "×",
             ]),
             0..30,
         )
@@ -196,12 +196,148 @@ proptest! {
 
 #[test]
 fn a_stitch_that_is_not_known_is_named_with_those_that_are() {
-    let (message, place) = refused("Cast on 10\nRow 1: k2, c4f, k4\n");
+    let (message, place) = refused("Cast on 10\nRow 1: k2, bobble, k4\n");
     assert!(
-        message.starts_with("row 1: `c4f` is no stitch that wale knows; it knows k, p, yo, k2tog, ssk"),
+        message.starts_with("row 1: `bobble` is no stitch that wale knows; it knows k, p, yo, k2tog, ssk"),
         "{message}"
     );
-    assert_eq!(place, "c4f");
+    assert_eq!(place, "bobble");
+}
+
+#[test]
+fn cables_and_twisted_stitches_are_refused_as_what_they_are() {
+    for (row, place) in [
+        ("k2, c4f, k4", "c4f"),
+        ("C6B, k4", "C6B"),
+        ("k2, 2/2 LC, k4", "2/2 LC"),
+        ("k2, 1/2/1 RPC, k4", "1/2/1 RPC"),
+        ("k2, t3l, k5", "t3l"),
+    ] {
+        let (message, underlined) = refused(&format!("Cast on 10\nRow 1: {row}\n"));
+        assert!(
+            message.starts_with(&format!("row 1: `{place}` is a cable: loops that cross cannot be held")),
+            "{message}"
+        );
+        assert_eq!(underlined, place);
+    }
+    for (row, place) in [
+        ("k2, k1tbl, k7", "k1tbl"),
+        ("*ktbl, p1*", "ktbl"),
+        ("k2, p1 tbl, k7", "p1 tbl"),
+        ("k tbl to end", "k tbl"),
+        ("knit 10 sts tbl", "knit 10 sts tbl"),
+        ("ssk tbl, k8", "ssk tbl"),
+    ] {
+        let (message, underlined) = refused(&format!("Cast on 10\nRow 1: {row}\n"));
+        assert!(message.starts_with(&format!("row 1: `{place}` is a twisted stitch")), "{message}");
+        assert_eq!(underlined, place);
+    }
+}
+
+#[test]
+fn decreases_are_read_by_every_name_that_knitters_give_them() {
+    let stitch = |decrease: &str| {
+        let row = rows(&format!("Cast on 6\nRow 1: k1, {decrease}, k to end\n")).remove(0);
+        row.chars().rev().nth(1).unwrap()
+    };
+    // Leaning to the left, the first loop over the others.
+    for decrease in [
+        "ssk",
+        "skp",
+        "skpo",
+        "sl1, k1, psso",
+        "sl1-k1-psso",
+        "sl 1 knitwise, k1, pass slipped st over",
+        "k2tog tbl",
+        "k2togtbl",
+    ] {
+        assert_eq!(stitch(decrease), '\\', "{decrease}");
+    }
+    for decrease in ["sssk", "sk2p", "sl1-k2tog-psso", "sl1, k2tog, psso", "slip 1, k2tog, psso", "k3tog tbl"] {
+        assert_eq!(stitch(decrease), '<', "{decrease}");
+    }
+    for decrease in ["cdd", "s2kp", "s2kp2", "s2kpo", "sl2-k1-p2sso", "sl 2 tog kwise, k1, p2sso"] {
+        assert_eq!(stitch(decrease), '^', "{decrease}");
+    }
+    for (decrease, symbol) in [("p2tog tbl", 'l'), ("ssp", 'l'), ("p3tog tbl", 'L')] {
+        assert_eq!(stitch(decrease), symbol, "{decrease}");
+    }
+    // What only begins like one is slipped and knitted.
+    assert_eq!(rows("Cast on 3\nRow 1: sl1, k1, p1\n"), ["pkV"]);
+}
+
+#[test]
+fn every_second_row_is_said_once() {
+    let seven = "Row 1 (RS): k\nRow 3: k1, p1, k1\nRow 5: k\nRow 7: p\n";
+    for second in [
+        "Row 2 and all WS rows: purl",
+        "Row 2 (WS) and all following WS rows: purl",
+        "Row 2 and every alternate row: Purl",
+        "Row 2 (and all even-numbered rows): purl to end",
+        "Row 2, and every other row: p across",
+        "Row 2 and all other wrong-side rows: p3",
+        "Row 2 (WS) and every foll alt row: Purl.",
+    ] {
+        let text = format!("Cast on 3\n{seven}{second}\n");
+        assert_eq!(rows(&text), ["kkk", "kkk", "kpk", "kkk", "kkk", "kkk", "ppp", "kkk"], "{second}");
+    }
+    // Rows that a line says go before; from another row on another one; what is repeated has the last row, too.
+    let text =
+        "Cast on 1\nRow 2 and all WS rows: p\nRow 1: k\nRow 3: k\nRow 4: k\nRow 5: k\nRow 7: k\nRep rows 7-8 once\n";
+    assert_eq!(rows(text), ["k", "k", "k", "p", "k", "k", "k", "k", "k", "k"]);
+    let text = "Cast on 1\nRow 2 and all WS rows: p\nRow 1 and all RS rows: k\nRow 6 and all WS rows: k\nRow 9: k\n";
+    assert_eq!(refused(text).0, "row 3 is missing", "more than one row between two that are said");
+    assert_eq!(rows("Cast on 1\nRow 1 and every alt row: k\nRow 2: p\nRow 4: k\n"), ["k", "k", "k", "p"]);
+    let cases = [
+        ("Row 2 and all odd rows: p", "row 2: `all odd rows` would leave out row 2 itself", "all odd rows"),
+        (
+            "Row 2 and all other rows: p",
+            "row 2: expected `WS rows`, `even rows` or `alternate rows`, found `rows`",
+            "rows",
+        ),
+        ("Row 2 and all rows: p", "row 2: expected `WS rows`, `even rows` or `alternate rows`, found `rows`", "rows"),
+        (
+            "Row 2 and all RS rows: p",
+            "row 2: it cannot be a right-side (RS) row: sides alternate, and row 1 is a right-side (RS) row",
+            "all RS rows",
+        ),
+    ];
+    for (second, message, place) in cases {
+        let (found, underlined) = refused(&format!("Cast on 3\n{seven}{second}\n"));
+        assert_eq!((found.as_str(), underlined.as_str()), (message, place));
+    }
+    // The row whose stitches do not work out is told, though no line says it.
+    let (message, place) = refused("Cast on 4\nRow 1: k\nRow 2 and all WS rows: p4\nRow 3: k2tog, k2\n");
+    assert_eq!(
+        (message.as_str(), place.as_str()),
+        ("row 4: up to `p4` the row takes 4 stitches, but there are 3", "p4")
+    );
+}
+
+#[test]
+fn lace_of_a_stitch_dictionary_is_read() {
+    let text = include_str!("../../../tests/corpus/instructions/lace-of-a-stitch-dictionary.knit");
+    let plain = "k".repeat(21);
+    let eyelets = "kkkkko\\k\\o".repeat(2) + "k";
+    let arrows = "k".to_owned() + &"o<ok".repeat(5);
+    let edges = format!("\\o{}o/", "k".repeat(17));
+    let fans = "okko<".repeat(4) + "k";
+    let expected = [&eyelets, &plain, &arrows, &plain, &edges, &plain, &fans, &plain];
+    assert_eq!(rows(text).iter().collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn a_repeat_without_a_count_is_of_all_rows() {
+    let four = "Cast on 1\nRows 1 and 3: knit\nRows 2, 4: purl\n";
+    for repeat in ["Rep rows 1-4", "Rep Rows 1–4 for pattern.", "Repeat rows 1 to 4."] {
+        assert_eq!(rows(&format!("{four}{repeat}\n")), rows(four), "{repeat}");
+    }
+    let (message, place) = refused(&format!("{four}Rep rows 3-4\n"));
+    assert_eq!(
+        message,
+        "how often rows 3–4 are repeated must be said, `3 more times`, as they are not all of the 4 rows"
+    );
+    assert_eq!(place, "Rep rows 3-4");
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Knitted;
 use super::machine::{Machine, Made};
-use super::{KnitoutError, KnitoutErrorReason as Reason, Knitted};
 use crate::pattern::loops::{Form2d, Held, Loop, LoopGraph, LoopId, Onward, Stop, Strand};
 
 /// How far in front of the middle a loop of the front bed lies, in columns, and behind it one of the back bed.
@@ -12,29 +12,6 @@ const BED: f64 = 0.3;
 const TURN: f64 = 0.85;
 
 impl Machine {
-    /// Refuses neighbours of a bed that lie the other way round than the loops that they are drawn through.
-    pub fn check_cables(&self) -> Result<(), KnitoutError> {
-        for (_, path) in &self.done {
-            let drawn: Vec<&Made> =
-                path.iter().map(|(id, _)| &self.made[*id]).filter(|made| !made.parents.is_empty()).collect();
-            for pair in drawn.windows(2) {
-                let (first, second) = (pair[0], pair[1]);
-                if first.rightward != second.rightward || first.bed != second.bed {
-                    continue;
-                }
-                let (left, right) = if first.x <= second.x { (first, second) } else { (second, first) };
-                let xs = |made: &Made| made.parents.iter().map(|id| self.made[*id].x).collect::<Vec<_>>();
-                let of_left = xs(left).into_iter().fold(f64::INFINITY, f64::min);
-                let of_right = xs(right).into_iter().fold(f64::NEG_INFINITY, f64::max);
-                // Crossed for certain where even the leftmost of the left lies right of the rightmost of the right.
-                if left.x + 1e-9 < right.x && of_left > of_right + 1e-9 {
-                    return Err(second.place.error(Reason::Cable { other: first.place.line }));
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// The loops row by row, and the way of every yarn.
     pub fn graph(mut self) -> Knitted {
         // Columns are the places where loops were ever made, so that needles left empty take no room.

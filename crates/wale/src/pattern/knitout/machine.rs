@@ -14,9 +14,13 @@ pub(super) struct Made {
     pub bed: Bed,
     /// In needles of the front bed.
     pub x: f64,
+    /// How far the back bed was racked.
+    pub rack: f64,
     pub row: i32,
     /// The loops that it is drawn through, front to back.
     pub parents: Vec<usize>,
+    /// The first loop that is drawn through it; beyond all where there is none.
+    pub child: usize,
     pub rightward: bool,
     pub place: Place,
 }
@@ -298,7 +302,12 @@ impl Machine {
         // The yarn floats past what hangs between its last loop and this one.
         let over = last.map_or(0, |last| self.needles.between(last.x.min(x), last.x.max(x), needle.bed, self.rack));
         let id = self.made.len();
-        self.made.push(Made { form, bed: needle.bed, x, row, parents, rightward, place: place.clone() });
+        for parent in &parents {
+            let made = &mut self.made[*parent];
+            made.child = made.child.min(id);
+        }
+        let (bed, rack, child) = (needle.bed, self.rack, usize::MAX);
+        self.made.push(Made { form, bed, x, rack, row, parents, child, rightward, place: place.clone() });
         if !self.fed.contains_key(carriers) && self.known.insert(carriers.to_vec()) && self.known.len() > MOST_YARNS {
             return Err(place.error(Reason::TooManyYarns));
         }

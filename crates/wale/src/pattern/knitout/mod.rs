@@ -5,6 +5,7 @@
 //! from the front, loops made on the back bed purls.
 
 mod beds;
+mod cables;
 mod graph;
 mod machine;
 mod program;
@@ -16,6 +17,7 @@ use std::ops::Range;
 use thiserror::Error;
 
 use super::loops::LoopGraph;
+use super::remark::Remark;
 
 /// Most bytes of a program.
 pub const LARGEST_PROGRAM: usize = 16 << 20;
@@ -37,15 +39,6 @@ pub struct Knitted {
     pub carriers: Vec<String>,
     /// What was unusual but could be knitted, by line.
     pub remarks: Vec<Remark>,
-}
-
-/// Something that a program does and that is worth a word.
-#[derive(Clone, PartialEq, Eq, Debug)]
-pub struct Remark {
-    /// Line of the program, from 1.
-    pub line: usize,
-    /// What was seen there.
-    pub what: String,
 }
 
 /// Why a program cannot be knitted.

@@ -1,5 +1,7 @@
 //! What programs become, and how bad ones are refused.
 
+use std::collections::BTreeSet;
+
 use super::*;
 use crate::pattern::loops::{Form, Stop};
 use proptest::prelude::*;
@@ -159,6 +161,122 @@ fn cables_are_recognised() {
     assert!(matches!(*error.reason, KnitoutErrorReason::Cable { other } if other == 16), "{error}");
     assert_eq!(error.line, 17);
     assert!(error.to_string().ends_with("(made from braid.js:7)"));
+}
+
+/// Needles cast on, the last one first, and knitted once by carrier 1.
+fn knitted_once(needles: &[&str]) -> String {
+    let row = |word: &str, way: &str, needles: &mut dyn Iterator<Item = &&str>| {
+        needles.map(|needle| format!("{word} {way} {needle} 1\n")).collect::<String>()
+    };
+    format!("in 1\n{}{}", row("tuck", "-", &mut needles.iter().rev()), row("knit", "+", &mut needles.iter()))
+}
+
+#[track_caller]
+fn assert_cable(lines: &str, first: &str, second: &str) {
+    let error = read_knitout(&format!("{HEAD}{lines}")).expect_err("loops are crossed");
+    let KnitoutErrorReason::Cable { other } = *error.reason else { panic!("{error}") };
+    let line = |number: usize| lines.lines().nth(number - 3).unwrap();
+    assert_eq!((line(other), line(error.line)), (first, second), "{error}");
+    assert!(error.to_string().contains("a cable"), "{error}");
+}
+
+#[test]
+fn a_knit_wale_that_crosses_a_purl_wale_is_a_cable() {
+    // The knit wale goes from f0 by b0 to f4 and on to f2, the purl wale from b2 by f2 to b0.
+    let crossed = "xfer f0 b0\nrack 4\nxfer b0 f4\nrack 0\nxfer b2 f2\nrack 2\nxfer f2 b0\nrack 0\nxfer f4 b4\n\
+                   rack -2\nxfer b4 f2\nrack 0\n";
+    let start = knitted_once(&["f0", "b2"]);
+    assert_cable(&format!("{start}{crossed}knit - f2 1\nknit - b0 1\n"), "knit - f2 1", "knit - b0 1");
+    // They may go anywhere else as long as neither passes the other.
+    knitted(&format!("{start}xfer f0 b0\nrack 1\nxfer b0 f1\nrack 0\nknit - b2 1\nknit - f1 1\n"));
+}
+
+#[test]
+fn wales_of_two_carriers_cross_in_a_cable() {
+    let other = |way: &str, needles: [&str; 2]| needles.map(|needle| format!("knit {way} {needle} 2\n")).concat();
+    let start = format!(
+        "in 1\nin 2\ntuck - f1 1\ntuck - f0 1\ntuck - f3 2\ntuck - f2 2\nknit + f0 1\nknit + f1 1\n{}",
+        other("+", ["f2", "f3"])
+    );
+    let crossed = "xfer f1 b1\nxfer f2 b2\nrack 1\nxfer b1 f2\nrack -1\nxfer b2 f1\nrack 0\n";
+    // Yarns that stay where they are, and yarns that go with their wales.
+    let stay = format!("{start}{crossed}knit - f1 1\nknit - f0 1\n{}", other("-", ["f3", "f2"]));
+    assert_cable(&stay, "knit - f1 1", "knit - f2 2");
+    let go = format!("{start}{crossed}knit - f2 1\nknit - f0 1\n{}", other("-", ["f3", "f1"]));
+    assert_cable(&go, "knit - f2 1", "knit - f1 2");
+    // A knit wale of the one and a purl wale of the other: nothing but their rows says that they are neighbours.
+    let start = "in 1\nin 2\ntuck - f0 1\ntuck - b2 2\nknit + f0 1\nknit + b2 2\n";
+    let crossed = "xfer b2 f2\nxfer f0 b0\nrack 4\nxfer b0 f4\nrack 2\nxfer f2 b0\nrack 0\n";
+    assert_cable(&format!("{start}{crossed}knit - f4 1\nknit - b0 2\n"), "knit - f4 1", "knit - b0 2");
+}
+
+#[test]
+fn wales_cross_in_a_cable_in_whatever_order_they_are_knitted() {
+    let start = knitted_once(&["f0", "f1", "f2", "f3"]);
+    let crossed = "xfer f1 b1\nxfer f2 b2\nrack 1\nxfer b1 f2\nrack -1\nxfer b2 f1\nrack 0\n";
+    for (order, first, second) in [
+        (["- f3", "- f2", "- f1", "- f0"], "knit - f2 1", "knit - f1 1"),
+        // Another loop between them, on its needle or over an empty one.
+        (["- f2", "- f9", "- f1", "- f0"], "knit - f2 1", "knit - f1 1"),
+        // To and fro.
+        (["- f3", "- f1", "+ f0", "+ f2"], "knit - f1 1", "knit + f2 1"),
+    ] {
+        let row: String = order.map(|at| format!("knit {at} 1\n")).concat();
+        assert_cable(&format!("{start}{crossed}{row}"), first, second);
+    }
+    // Two wales over two others.
+    let over = "xfer f0 b0\nxfer f1 b1\nrack 4\nxfer b0 f4\nxfer b1 f5\nrack 0\nxfer f2 b2\nxfer f3 b3\nrack -2\nxfer b2 f0\n\
+                xfer b3 f1\nrack 0\n";
+    let row: String = ["f5", "f4", "f1", "f0"].map(|at| format!("knit - {at} 1\n")).concat();
+    assert_cable(&format!("{start}{over}{row}"), "knit - f5 1", "knit - f1 1");
+}
+
+#[test]
+fn what_only_looks_like_a_cable_is_knitted() {
+    // The front of a tube goes two needles to the right, its back two to the left.
+    let start = knitted_once(&["f0", "f2", "f4"]) + "knit - b5 1\nknit - b3 1\nknit - b1 1\n";
+    let tube = format!("{start}knit + f0 1\nknit + f2 1\nknit + f4 1\nknit - b5 1\nknit - b3 1\nknit - b1 1\n");
+    let front: String =
+        [4, 2, 0].map(|at| format!("xfer f{at} b{at}\nrack 2\nxfer b{at} f{}\nrack 0\n", at + 2)).concat();
+    let back: String =
+        [1, 3, 5].map(|at| format!("xfer b{at} f{at}\nrack 2\nxfer f{at} b{}\nrack 0\n", at - 2)).concat();
+    let turned = "knit + f2 1\nknit + f4 1\nknit + f6 1\nknit - b3 1\nknit - b1 1\nknit - b-1 1\n";
+    knitted(&format!("{tube}{front}{back}{turned}"));
+    // The back bed of a rib is racked to and fro.
+    let rib = knitted_once(&["f0", "b0", "f1", "b1"]);
+    let row = |rack: &str, needles: [&str; 4]| {
+        format!("rack {rack}\n{}", needles.map(|needle| format!("knit - {needle} 1\n")).concat())
+    };
+    knitted(&format!("{rib}{}{}", row("0.5", ["b1", "f1", "b0", "f0"]), row("-0.5", ["f1", "b1", "f0", "b0"])));
+    // Two stitches together, and a yarn-over where one of them was.
+    let lace = knitted_once(&["f0", "f1", "f2", "f3"]);
+    knitted(&format!(
+        "{lace}xfer f1 b1\nrack 1\nxfer b1 f2\nrack 0\nknit - f3 1\nknit - f2 1\nknit - f1 1\nknit - f0 1\n"
+    ));
+    // Loops that wait while others are worked twice; what waits is moved over to them, and they have moved before.
+    let waiting = "knit - f3 1\nknit + f3 1\nxfer f3 b3\nrack 6\nxfer b3 f9\nrack 0\n";
+    let moved: String =
+        [0, 1, 2].map(|at| format!("xfer f{at} b{at}\nrack 4\nxfer b{at} f{}\nrack 0\n", at + 4)).concat();
+    knitted(&format!("{lace}{waiting}{moved}knit - f9 1\nknit - f6 1\nknit - f5 1\nknit - f4 1\n"));
+}
+
+#[test]
+fn a_loop_that_is_dropped_hangs_free_and_a_miss_makes_none() {
+    let start = knitted_once(&["f0", "f1", "f2"]);
+    let row = "knit - f2 1\nknit - f0 1\n";
+    // By their lines: what is dropped, and what is on the needles at the end.
+    let unsupported = |lines: &str| knitted(lines).graph.unsupported().map(|of| of.source - 2).collect::<BTreeSet<_>>();
+    assert_eq!(unsupported(&format!("{start}drop f1\n{row}")), BTreeSet::from([6, 9, 10]));
+    let again = "knit + f0 1\nknit + f1 1\nknit + f2 1\n";
+    let held = format!("{start}knit - f2 1\nmiss - f1 1\nknit - f0 1\n{again}");
+    assert_eq!(parents(&knitted(&held), 12), [6], "what was missed is on its needle still");
+    assert_eq!(unsupported(&held), BTreeSet::from([11, 12, 13]));
+    assert_eq!(knitted(&held).graph.longest_float(), 1, "and the yarn floated past it");
+    let dropped = format!("{start}knit - f2 1\ndrop f1\nknit - f0 1\n{again}");
+    let open = knitted(&dropped).graph.loops.iter().find(|of| of.source == 14).unwrap().clone();
+    assert_eq!((open.form, open.parents.len()), (Form::Open, 0));
+    assert_eq!(unsupported(&dropped), BTreeSet::from([6, 11, 12, 13]));
+    assert_eq!(knitted(&dropped).graph.longest_float(), 0, "the yarn passes nothing where the needle is empty");
 }
 
 proptest! {

@@ -5,6 +5,7 @@ use glam::{DQuat, DVec3};
 
 use super::draft::{Draft, Thread};
 use crate::model::{Crossing, Float, LoopInfo, Network, NodeId, PassId, PassKind, SegmentKind, YarnId, YarnRole};
+use crate::pattern::remark::Remark;
 
 /// How the weft goes at the sides.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
@@ -36,6 +37,8 @@ pub struct Woven {
     pub fringe: [f64; 2],
     /// The piece that is cut out of its middle and turned upright, if one is.
     pub bias: Option<BiasCut>,
+    /// What was unusual in the file that the draft was read from.
+    pub remarks: Vec<Remark>,
 }
 
 /// Colours of warp and weft of which nothing is said.
@@ -58,7 +61,8 @@ impl Woven {
     /// A draft with a woven selvedge and short free ends of half a spacing.
     #[must_use]
     pub fn new(draft: Draft, spacing: [f64; 2]) -> Self {
-        Self { draft, selvedge: Selvedge::Woven, fringe: [0.5 * spacing[1], 0.5 * spacing[0]], bias: None }
+        let fringe = [0.5 * spacing[1], 0.5 * spacing[0]];
+        Self { draft, selvedge: Selvedge::Woven, fringe, bias: None, remarks: Vec::new() }
     }
 
     /// The sheet, straight and flat, with ends and picks at a distance from their neighbours \[m\].
@@ -314,7 +318,7 @@ mod tests {
     fn every_crossing_has_both_yarns_in_the_drafts_order() {
         let draft = Draft::twill(2, 1).unwrap().repeat(7, 5).unwrap();
         for selvedge in [Selvedge::Woven, Selvedge::Cut] {
-            let woven = Woven { draft: draft.clone(), selvedge, fringe: [2e-3, 3e-3], bias: None };
+            let woven = Woven { selvedge, fringe: [2e-3, 3e-3], ..Woven::new(draft.clone(), [1e-3; 2]) };
             let network = woven.network([1e-3, 0.8e-3]);
             assert_eq!(network.crossings.len(), 35);
             let yarn_of = network.pass_yarn();

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::wif::{WifError, WifErrorReason as Reason};
+use crate::pattern::remark::Remark;
 
 /// A key with its value, both as written.
 #[derive(Clone, Debug)]
@@ -41,7 +42,7 @@ pub(super) struct Ini {
 /// What was unusual, with its line. A file of sixteen megabytes can be so in every line; the first hundred tell enough.
 #[derive(Default)]
 pub(super) struct Remarks {
-    list: Vec<(usize, String)>,
+    list: Vec<Remark>,
 }
 
 impl Remarks {
@@ -49,11 +50,11 @@ impl Remarks {
 
     pub fn add(&mut self, line: usize, what: impl FnOnce() -> String) {
         if self.list.len() < Self::MOST {
-            self.list.push((line, what()));
+            self.list.push(Remark { line, what: what() });
         }
     }
 
-    pub fn sorted(mut self) -> Vec<(usize, String)> {
+    pub fn sorted(mut self) -> Vec<Remark> {
         self.list.sort();
         self.list
     }

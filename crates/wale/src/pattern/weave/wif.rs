@@ -8,6 +8,7 @@ use thiserror::Error;
 use super::draft::{Draft, DraftError, Thread};
 use super::ini::{self, At, Entry, Ini, Section, shortened};
 use super::shed::Sheds;
+use crate::pattern::remark::Remark;
 
 /// Most bytes of a file.
 pub const LARGEST_WIF: usize = 16 << 20;
@@ -19,8 +20,8 @@ const MOST_SHAFTS: u64 = 10_000;
 pub struct Wif {
     /// The draft.
     pub draft: Draft,
-    /// What was unusual but could be read, with its line.
-    pub remarks: Vec<(usize, String)>,
+    /// What was unusual but could be read, by line; of lengths of the threads, what a fabric makes of them.
+    pub remarks: Vec<Remark>,
 }
 
 /// Why bytes are no WIF.
@@ -29,7 +30,7 @@ pub struct Wif {
 pub struct WifError {
     /// Line of the file, from 1.
     pub line: usize,
-    /// The bytes of the file that are wrong.
+    /// The bytes that are wrong, of the file as [`String::from_utf8_lossy`] reads it.
     pub span: Range<usize>,
     /// What is wrong.
     pub reason: Box<WifErrorReason>,
@@ -136,7 +137,8 @@ pub fn read_wif(bytes: &[u8]) -> Parsed<Wif> {
     let text = String::from_utf8_lossy(bytes);
     let mut file = File { ini: ini::read(&text)? };
     if !file.ini.sections.contains_key("WIF") {
-        return Err(nowhere.error(Reason::NoWif));
+        let first_line = text.lines().next().unwrap_or_default();
+        return Err(At { line: 1, span: 0..first_line.len() }.error(Reason::NoWif));
     }
     let draft = file.draft()?;
     Ok(Wif { draft, remarks: file.ini.remarks.sorted() })
@@ -173,8 +175,15 @@ impl Lifts {
 
 impl File {
     fn section(&self, name: &'static str, says: &'static str) -> Parsed<&Section> {
-        let end = At { line: 1, span: 0..0 };
-        self.ini.sections.get(name).ok_or_else(|| end.error(Reason::NoSection { section: name, says }))
+        self.ini.sections.get(name).ok_or_else(|| self.missing(name, says))
+    }
+
+    /// A section that is not there stands nowhere: the place is where the contents promise it, or else the file's head.
+    fn missing(&self, section: &'static str, says: &'static str) -> WifError {
+        let sections = &self.ini.sections;
+        let promised = sections.get("CONTENTS").and_then(|contents| contents.entries.get(&section.to_lowercase()));
+        let at = promised.map_or(&sections["WIF"].at, |entry| &entry.at);
+        at.error(Reason::NoSection { section, says })
     }
 
     fn draft(&mut self) -> Parsed<Draft> {
@@ -223,11 +232,7 @@ impl File {
                 let pressed = self.lists("TREADLING", &treadling, ("pick", picks), ("treadle", treadles))?;
                 Ok(Lifts { pressed, tieup: Some(tieup) })
             }
-            (None, None) => {
-                let at = At { line: 1, span: 0..0 };
-                let (section, says) = ("TREADLING", "what is woven (nor is there a [LIFTPLAN])");
-                Err(at.error(Reason::NoSection { section, says }))
-            }
+            (None, None) => Err(self.missing("TREADLING", "what is woven (nor is there a [LIFTPLAN])")),
         }
     }
 
@@ -361,7 +366,36 @@ impl File {
                 }
             }
         }
+        self.remark_on_lengths(name, &section, unit.is_some(), &threads);
         Ok(Threads { count: count as usize, threads })
+    }
+
+    /// What the file says of its threads' lengths and a fabric does not take, or not as it is said.
+    fn remark_on_lengths(&mut self, name: &str, section: &Section, has_units: bool, threads: &[Thread]) {
+        let Ini { sections, remarks } = &mut self.ini;
+        // The first line that gives one: that of all threads, or that of one.
+        let first = |key: &str| {
+            let own = sections.get(&format!("{name} {}", key.to_uppercase()));
+            let said = section.entries.get(key).into_iter().chain(own.into_iter().flat_map(|own| own.entries.values()));
+            said.filter(|entry| entry.value.parse().is_ok_and(|length: f64| length > 0.0))
+                .map(|entry| entry.at.line)
+                .min()
+        };
+        if let Some(line) = first("spacing") {
+            if !has_units {
+                remarks.add(line, || format!("[{name}] has no Units, so that its spacing is passed over"));
+            } else if threads.windows(2).any(|pair| pair[0].spacing != pair[1].spacing) {
+                let what = || {
+                    format!(
+                        "the threads of [{name}] are not evenly spaced: a fabric has their mean everywhere, or the scene's sett"
+                    )
+                };
+                remarks.add(line, what);
+            }
+        }
+        if let Some(line) = first("thickness") {
+            remarks.add(line, || format!("thickness of [{name}] is passed over: the yarns say how thick they are"));
+        }
     }
 }
 

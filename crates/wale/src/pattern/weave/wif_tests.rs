@@ -1,8 +1,7 @@
 //! Drafts that are read, dialects that are understood, and files that are refused with the place.
 
-use std::path::PathBuf;
-
 use super::*;
+use crate::pattern::Remark;
 use proptest::prelude::*;
 
 const TWILL: &str = "[WIF]\nVersion=1.1\n[WEAVING]\nShafts=4\nTreadles=4\n[WARP]\nThreads=4\nUnits=centimeters\nSpacing=0.1\nColor=1\n\
@@ -33,7 +32,9 @@ fn lift_plans_sinking_sheds_and_counting_from_zero() {
     assert_eq!(drawn(&sinking), "\n.xx.\nxx..\nx..x\n..xx");
     let plan = format!("{TWILL}[LIFTPLAN]\n1=1\n2=2,4\n3=\n4=0\n");
     assert_eq!(drawn(&plan), "\n....\n....\n.x.x\nx...");
-    assert!(read_wif(plan.as_bytes()).unwrap().remarks.iter().any(|(_, what)| what.contains("the lift plan counts")));
+    assert!(
+        read_wif(plan.as_bytes()).unwrap().remarks.iter().any(|remark| remark.what.contains("the lift plan counts"))
+    );
     let from_zero = TWILL.replace("[THREADING]\n1=1\n2=2\n3=3\n4=4\n", "[THREADING]\n0=1\n1=2\n2=3\n3=4\n");
     assert_eq!(drawn(&from_zero), drawn(TWILL));
 }
@@ -45,7 +46,42 @@ fn liberties_of_programs_are_taken_with_a_remark() {
     );
     let wif = read_wif(text.replace('\n', "\r\n").as_bytes()).unwrap();
     assert_eq!(format!("{:?}", wif.draft), drawn(TWILL));
-    assert!(wif.remarks.iter().any(|(line, what)| *line == 1 && what.contains("before the first section")));
+    let before = "text before the first section is passed over";
+    assert!(wif.remarks.contains(&Remark { line: 1, what: before.to_owned() }), "{:?}", wif.remarks);
+}
+
+#[test]
+fn lengths_that_a_fabric_does_not_take_are_remarked_once_with_their_line() {
+    let remarks = |text: &str| {
+        let remarks = read_wif(text.as_bytes()).unwrap_or_else(|error| panic!("{error}")).remarks;
+        remarks.into_iter().map(|Remark { line, what }| (line, what)).collect::<Vec<_>>()
+    };
+    let no_units = TWILL.replace("Units=centimeters\n", "");
+    assert_eq!(remarks(&no_units), [(8, "[WARP] has no Units, so that its spacing is passed over".to_owned())]);
+    let mean = "the threads of [WARP] are not evenly spaced: a fabric has their mean everywhere, or the scene's sett";
+    assert_eq!(remarks(&format!("{TWILL}[WARP SPACING]\n2=0.2\n3=0.2\n")), [(9, mean.to_owned())]);
+    // Said for each thread, but evenly.
+    assert_eq!(remarks(&format!("{TWILL}[WARP SPACING]\n2=0.1\n")), []);
+    let thick = "thickness of [WEFT] is passed over: the yarns say how thick they are";
+    assert_eq!(remarks(&format!("{TWILL}[WEFT THICKNESS]\n1=\n2=0.2\n3=0.2\n")), [(36, thick.to_owned())]);
+    assert_eq!(remarks(&TWILL.replace("Color=2", "Units=cm\nThickness=0.02")), [(13, thick.to_owned())]);
+}
+
+#[test]
+fn a_missing_section_is_told_where_the_contents_promise_it() {
+    let promised = TWILL.replace("[WIF]\n", "[WIF]\n[CONTENTS]\nTieup=yes\n").replace("[TIEUP]", "[OTHER]");
+    assert_eq!(
+        refused(&promised),
+        (
+            "line 3: there is no section [TIEUP], which says which shafts each treadle lifts".to_owned(),
+            "Tieup=yes".to_owned()
+        )
+    );
+    assert_eq!(refused(&TWILL.replace("[TIEUP]", "[OTHER]")).1, "[WIF]");
+    assert_eq!(
+        refused(&TWILL.replace("[WIF]", "[WIG]")),
+        ("line 1: this is no WIF: there is no section [WIF]".to_owned(), "[WIG]".to_owned())
+    );
 }
 
 #[test]
@@ -117,30 +153,6 @@ fn small_files_ask_for_little_time_and_memory() {
     let (message, _) = refused(&TWILL.replace("[WARP]\nThreads=4", "[WARP]\nThreads=3000000"));
     assert!(message.contains("3000000 threads, the limit is 1000000 of warp and of weft each"), "{message}");
     assert!(began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
-}
-
-#[test]
-fn collected_files_are_read() {
-    let Some(folder) = std::env::var_os("WALE_DATA").map(|data| PathBuf::from(data).join("wif")) else {
-        println!("skipped: WALE_DATA does not name a folder with collected drafts");
-        return;
-    };
-    let mut count = 0;
-    for entry in std::fs::read_dir(&folder).unwrap() {
-        let path = entry.unwrap().path();
-        let wif =
-            read_wif(&std::fs::read(&path).unwrap()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-        println!(
-            "{}: {} × {}, floats {:?}, {:?}",
-            path.display(),
-            wif.draft.ends(),
-            wif.draft.picks(),
-            wif.draft.longest_floats(),
-            wif.remarks
-        );
-        count += 1;
-    }
-    assert!(count > 0);
 }
 
 proptest! {

@@ -9,7 +9,7 @@ use crate::pattern::instructions::{self, LARGEST_TEXT, read_instructions};
 use crate::pattern::knitout::{KnitoutError, KnitoutErrorReason, LARGEST_PROGRAM};
 use crate::pattern::named::{self, NamedPatternError, named_pattern};
 use crate::pattern::symbols::{Legend, default_legend, read_symbols};
-use crate::pattern::{Chart, ChartError, Program, Side, Stitch, Structure, Working};
+use crate::pattern::{Chart, ChartError, NotHeld, Program, Side, Stitch, Structure, Working};
 use crate::scene::error::{Complaint, ErrorClass, SceneError, nearest, shortened};
 use crate::scene::schema::{ChartText, FirstRow, Worked};
 
@@ -235,6 +235,9 @@ fn symbols(lines: &[String], text: &ChartText) -> Result<Chart, Complaint> {
 
 /// A name that is no stitch.
 pub(super) fn unknown_stitch(path: &str, name: &str) -> Complaint {
+    if let Some(not_held) = NotHeld::named(name) {
+        return Complaint::new(path, format!("\"{}\" is {not_held}", shortened(name)));
+    }
     let near = nearest(name, Stitch::all().map(|(name, ..)| name));
     let near = near.map(|near| format!("did you mean \"{near}\"? ")).unwrap_or_default();
     Complaint::new(path, format!("\"{}\" is no stitch that wale knows", shortened(name)))

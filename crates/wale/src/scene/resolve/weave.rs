@@ -1,5 +1,6 @@
 //! The draft of a scene and the card of its fabric.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::beside::{path_beside, read_bytes};
@@ -7,7 +8,7 @@ use super::{Failure, exactly_one, si};
 use crate::model::{WovenCard, Yarns};
 use crate::pattern::Structure;
 use crate::pattern::instructions::MOST_YARNS;
-use crate::pattern::weave::wif::LARGEST_WIF;
+use crate::pattern::weave::wif::{LARGEST_WIF, Wif};
 use crate::pattern::weave::{
     BiasCut, Draft, DraftError, Selvedge, Thread, WifErrorReason, Woven, named, named_weave, peirce, read_draft,
     read_wif,
@@ -48,6 +49,7 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
         [("pattern", text.pattern.is_some()), ("symbols", text.symbols.is_some()), ("file", text.file.is_some())];
     exactly_one(HERE, &given)?;
     let mut inputs = Vec::new();
+    let mut remarks = Vec::new();
     let draft = if let Some(name) = &text.pattern {
         named_weave(name).ok_or_else(|| {
             Complaint::new(format!("{HERE}.pattern"), format!("there is no weave \"{}\"", shortened(name)))
@@ -56,9 +58,10 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
     } else if let Some(lines) = &text.symbols {
         read_draft(lines).map_err(|error| Complaint::new(format!("{HERE}.symbols"), error.to_string()))?
     } else {
-        let (draft, path) = wif(text.file.as_deref().unwrap_or_default(), directory)?;
+        let (read, path) = wif(text.file.as_deref().unwrap_or_default(), directory)?;
         inputs.push(path);
-        draft
+        remarks = read.remarks;
+        read.draft
     };
     let bias = bias(text)?;
     if bias.is_none() {
@@ -68,7 +71,7 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
     let draft = sized(draft, text, bias.map(|cut| cut.reach(spacing)))?;
     let (draft, yarns) = threads(draft, text)?;
     let mut woven = Woven::new(draft, spacing);
-    woven.bias = bias;
+    (woven.bias, woven.remarks) = (bias, remarks);
     if text.selvedge == Some(SelvedgeText::Cut) {
         woven.selvedge = Selvedge::Cut;
     }
@@ -78,7 +81,7 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
     Ok(Drafted { woven, yarns, spacing, inputs })
 }
 
-fn wif(name: &str, directory: Option<&Path>) -> Result<(Draft, PathBuf), Failure> {
+fn wif(name: &str, directory: Option<&Path>) -> Result<(Wif, PathBuf), Failure> {
     let key = format!("{HERE}.file");
     let path = path_beside(&key, name, directory)?;
     let bytes = read_bytes(&path, &key, name, LARGEST_WIF)?;
@@ -89,12 +92,15 @@ fn wif(name: &str, directory: Option<&Path>) -> Result<(Draft, PathBuf), Failure
             _ => ErrorClass::BadInput,
         };
         let complaint = Complaint::new("", error.reason.to_string()).class(class);
-        // What is not text cannot be underlined.
-        let content = String::from_utf8(bytes.clone()).unwrap_or_default();
-        let span = Some(error.span.clone()).filter(|span| span.end <= content.len());
+        // Shown as the reader saw it, whatever its code page; text of two bytes a character would be shown with gaps.
+        let content = match *error.reason {
+            WifErrorReason::Utf16 => Cow::default(),
+            _ => String::from_utf8_lossy(&bytes),
+        };
+        let span = Some(error.span.clone());
         Failure::Elsewhere(Box::new(SceneError::new(complaint, &path.display().to_string(), &content, span)))
     })?;
-    Ok((read.draft, path))
+    Ok((read, path))
 }
 
 /// The piece that is cut out, which says how many ends and picks there are.
@@ -292,6 +298,7 @@ fn knit_keys(text: &FabricText) -> Result<(), Complaint> {
         ("leg_distance", text.leg_distance.is_some()),
         ("leg_stiffness", text.leg_stiffness.is_some()),
         ("crossing_spacing", text.crossing_spacing.is_some()),
+        ("facing_distance", text.facing_distance.is_some()),
         ("paper_table_1", text.paper_table_1.is_some()),
         ("chart", text.chart.is_some()),
     ];

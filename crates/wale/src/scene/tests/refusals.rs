@@ -130,6 +130,13 @@ fn bad_scenes_name_the_place_the_reason_and_the_mend() {
             Input,
         ),
         (
+            "schema = 1\n[fabric.chart]\nsymbols = [\"xx\"]\nlegend = { x = \"c4f\" }\n",
+            "\"c4f\"",
+            "\"c4f\" is a cable",
+            "",
+            Input,
+        ),
+        (
             "schema = 1\n[fabric.chart]\nsymbols = [\"xx\"]\nlegend = { x = \"k2to\" }\n",
             "\"k2to\"",
             "no stitch that wale knows",

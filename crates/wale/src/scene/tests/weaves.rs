@@ -79,6 +79,18 @@ fn what_the_scene_states_of_a_weave_goes_before_its_geometry() {
 }
 
 #[test]
+fn what_only_knits_have_is_refused_beside_a_weave() {
+    for key in ["wale_spacing", "contact_distance", "leg_distance", "facing_distance"] {
+        let text = format!(
+            "schema = 1\n{YARN}[fabric]\n{key} = \"1 mm\"\n[fabric.weave]\npattern = \"plain\"\nends = 4\npicks = 4\n\
+             end_spacing = \"0.5 mm\"\npick_spacing = \"0.5 mm\"\n"
+        );
+        let error = Scene::from_text(&text, "scene.toml").unwrap_err();
+        assert!(error.to_string().contains(&format!("{key} beside a weave")), "{error}");
+    }
+}
+
+#[test]
 fn a_wif_brings_its_colours_and_its_sett() {
     let folder = std::env::temp_dir().join(format!("wale-wif-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
@@ -99,8 +111,16 @@ fn a_wif_brings_its_colours_and_its_sett() {
     // The file's sett jams with a thicker yarn, and the error says at what.
     let error = write("[yarns.warp]\ndiameter = \"0.5 mm\"\nlinear_density = \"90 tex\"\n").unwrap_err();
     assert!(error.to_string().contains("it jams at"), "{error}");
-    std::fs::write(folder.join("plain.wif"), wif.replace("[TREADLING]\n1=1", "[TREADLING]\n1=7")).unwrap();
+    let wrong = wif.replace("[TREADLING]\n1=1", "[TREADLING]\n1=7");
+    std::fs::write(folder.join("plain.wif"), &wrong).unwrap();
     let error = write("").unwrap_err();
-    assert!(error.to_string().contains("plain.wif:35"), "{error}");
+    assert!(error.to_string().contains("plain.wif:35:1:"), "{error}");
+    // The same in a file with a title in Latin-1, which is no UTF-8.
+    let latin =
+        [wrong.split_at(18).0.as_bytes(), b"[TEXT]\nTitle=K\xf6per\n", wrong.split_at(18).1.as_bytes()].concat();
+    std::fs::write(folder.join("plain.wif"), latin).unwrap();
+    let error = write("").unwrap_err();
+    assert!(error.to_string().contains("plain.wif:37:1:"), "{error}");
+    assert_eq!(error.underlined(), Some("1=7"));
     std::fs::remove_dir_all(folder).unwrap();
 }
