@@ -64,7 +64,7 @@ fn lengths_that_a_fabric_does_not_take_are_remarked_once_with_their_line() {
     assert_eq!(remarks(&format!("{TWILL}[WARP SPACING]\n2=0.1\n")), []);
     let thick = "thickness of [WEFT] is passed over: the yarns say how thick they are";
     assert_eq!(remarks(&format!("{TWILL}[WEFT THICKNESS]\n1=\n2=0.2\n3=0.2\n")), [(36, thick.to_owned())]);
-    assert_eq!(remarks(&TWILL.replace("Color=2", "Units=cm\nThickness=0.02")), [(13, thick.to_owned())]);
+    assert_eq!(remarks(&TWILL.replace("Color=2", "Units=cm\nThickness=0.02")), [(14, thick.to_owned())]);
 }
 
 #[test]
