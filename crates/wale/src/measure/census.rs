@@ -151,7 +151,7 @@ impl Census {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{KnitCard, YarnCard};
+    use crate::model::{KnitCard, Member, YarnCard};
     use crate::pattern::{Chart, Side, Working, knit};
 
     fn cards() -> (YarnCard, KnitCard) {
@@ -208,5 +208,43 @@ mod tests {
             assert!(census.yarn_length_m > loops && census.yarn_length_m < 2.0 * loops, "{census:?}");
             assert!((census.mass_kg - census.yarn_length_m * 4e-4).abs() < 1e-15);
         }
+    }
+
+    #[test]
+    fn each_of_several_yarns_in_one_pass_has_the_whole_length_and_its_own_mass() {
+        let (heavy, fabric) = cards();
+        let light = YarnCard { linear_density: 1e-4, ..heavy.clone() };
+        let member =
+            |name: &str, grey, card: &YarnCard| Member { name: name.to_owned(), color: [grey; 3], card: card.clone() };
+        let rows = |yarns: [u8; 4]| yarns.map(|yarn| vec![yarn; 6]).to_vec();
+        let chart = Chart::stockinette().repeat(6, 4).unwrap().with_yarns(rows([0, 0, 1, 1])).unwrap();
+        let mut network = knit::fabric(&chart, Working::Flat { first_row: Side::RightSide }, &fabric);
+        network.yarn_color.fill([0x10; 3]);
+        let census = |both: YarnCard, members: [Member; 2]| {
+            let yarns = Yarns::new(heavy.clone(), [both]);
+            let yarns = yarns.named(vec!["A".to_owned(), "P".to_owned()], vec![Vec::new(), members.to_vec()]);
+            Census::of(&network, &yarns, &fabric)
+        };
+        let plated = [member("A", 0x10, &heavy), member("B", 0xf0, &light)];
+        let found = census(YarnCard::together(&heavy, [&light]), plated.clone());
+        let [alone, both] = found.yarn_lengths_m[..] else { panic!("{found:?}") };
+        let [a, b] = &found.amounts[..] else { panic!("{found:?}") };
+        assert_eq!([&a.name, &a.color, &b.name, &b.color], ["A", "#101010", "B", "#f0f0f0"]);
+        assert!((a.length_m - alone - both).abs() < 1e-12 && b.length_m == both, "alone and in the pass of both");
+        assert!((a.mass_kg - 4e-4 * a.length_m).abs() < 1e-12 && (b.mass_kg - 1e-4 * both).abs() < 1e-12);
+        assert!((found.mass_kg - a.mass_kg - b.mass_kg).abs() < 1e-12, "nothing is counted twice");
+        // Held double: twice the length of one yarn.
+        let twice = [member("B", 0xf0, &light), member("B", 0xf0, &light)];
+        let doubled = census(YarnCard::together(&light, [&light]), twice);
+        assert!((doubled.amounts[1].length_m - 2.0 * both).abs() < 1e-12);
+        // A density that the whole says itself is shared as those of its members are.
+        let said = census(YarnCard { linear_density: 1e-3, ..heavy.clone() }, plated);
+        assert!((said.amounts[1].mass_kg - 0.2 * 1e-3 * both).abs() < 1e-12);
+        // Two colours of one yarn are told apart.
+        network.yarn_kind.fill(0);
+        network.yarn_color[0] = [0x20; 3];
+        let colors = Census::of(&network, &heavy, &fabric).amounts;
+        assert_eq!(colors.iter().map(|of| of.color.as_str()).collect::<Vec<_>>(), ["#101010", "#202020"]);
+        assert!(colors.iter().all(|of| of.name == "yarn"));
     }
 }

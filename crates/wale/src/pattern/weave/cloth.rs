@@ -335,12 +335,11 @@ mod tests {
             let longest = network.floats.iter().map(|float| float.over).max();
             assert_eq!(longest, Some(2));
             for float in &network.floats {
-                // The next crossing of the thread, to either side or up, shows the same side.
+                // A warp lies over two picks, so a weft behind two ends: the next crossing of the thread shows the warp, too.
                 let (end, pick) = (float.column as usize, float.row as usize);
-                let up = |end: usize, pick: usize| end < 7 && pick < 5 && draft.warp_up(end, pick);
-                let same = |other: (usize, usize)| up(end, pick) == up(other.0, other.1);
-                let weft = [(end + 1, pick), (end.wrapping_sub(1), pick)];
-                assert!(if up(end, pick) { same((end, pick + 1)) } else { weft.into_iter().any(same) }, "{float:?}");
+                let up = |(end, pick): (usize, usize)| end < 7 && pick < 5 && draft.warp_up(end, pick);
+                let next = [(end, pick + 1), (end + 1, pick), (end.wrapping_sub(1), pick)];
+                assert!(up((end, pick)) && next.into_iter().any(up), "{float:?}");
             }
             // Everything is as long as it is laid.
             for yarn in 0..network.yarn_count() {

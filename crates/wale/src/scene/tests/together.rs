@@ -1,18 +1,11 @@
 //! Yarns that run together as one: how they are named, what follows, and what is refused.
 
 use super::*;
-use crate::measure::Census;
 use crate::model::YarnCard;
 
 const TWO: &str = "[yarns.A]\ncolor = \"#101010\"\n[yarns.B]\ncolor = \"#f0f0f0\"\nlinear_density = \"250 tex\"\n\
     friction = 0.1\nloose_ends = true\n";
 const STRIPED: &str = "[fabric.chart]\npattern = \"garter\"\ncolumns = 6\nrows = 4\nstripes = [\"A\", \"P\"]\n";
-
-fn census(scene: &Scene) -> Census {
-    let mut network = scene.structure.network(&scene.fabric);
-    scene.color_yarns(&mut network);
-    Census::of(&network, &scene.yarns, &scene.fabric)
-}
 
 fn read_file(name: &str, content: &str, yarns: &str) -> Scene {
     let folder = tempfile::tempdir().unwrap();
@@ -46,23 +39,6 @@ fn what_a_yarn_of_several_says_itself_goes_before_what_follows() {
 }
 
 #[test]
-fn each_member_runs_the_whole_length_and_weighs_its_own() {
-    let scene = read(&format!("{TWO}[yarns.P]\ntogether = [\"A\", \"B\"]\n{STRIPED}"));
-    let census = census(&scene);
-    let [alone, plated] = census.yarn_lengths_m[..] else { panic!("{census:?}") };
-    let [a, b] = &census.amounts[..] else { panic!("{census:?}") };
-    assert_eq!((a.name.as_str(), a.color.as_str(), b.color.as_str()), ("A", "#101010", "#f0f0f0"));
-    assert!((a.length_m - alone - plated).abs() < 1e-12, "alone and in the pass of both");
-    assert_eq!(b.length_m, plated);
-    assert!((a.mass_kg - 500e-6 * a.length_m).abs() < 1e-12 && (b.mass_kg - 250e-6 * plated).abs() < 1e-12);
-    assert!((census.mass_kg - a.mass_kg - b.mass_kg).abs() < 1e-12, "nothing is counted twice");
-    // Held double, twice the length of one yarn.
-    let doubled = self::census(&read(&format!("{TWO}[yarns.P]\ntogether = [\"B\", \"B\"]\n{STRIPED}")));
-    assert!((doubled.amounts[1].length_m - 2.0 * plated).abs() < 1e-12);
-    assert!((doubled.amounts[1].mass_kg - 500e-6 * plated).abs() < 1e-12);
-}
-
-#[test]
 fn a_whole_fabric_may_be_of_one_yarn_of_several() {
     let chart = STRIPED.replace("[\"A\", \"P\"]", "[\"P\"]");
     let scene = read(&format!("{TWO}[yarns.P]\ntogether = [\"A\", \"B\"]\n{chart}"));
@@ -78,9 +54,8 @@ fn carriers_that_feed_together_are_the_yarns_of_both() {
     let scene = read_file("plated.k", program, yarns);
     assert_eq!([0, 1].map(|kind| scene.yarns.name(kind)), [Some("1"), Some("1 2")]);
     assert!((scene.yarns.of(1).linear_density - 700e-6).abs() < 1e-18);
-    let amounts = census(&scene).amounts;
-    assert_eq!(amounts.iter().map(|of| of.name.as_str()).collect::<Vec<_>>(), ["1", "2"]);
-    assert!(amounts[0].length_m > amounts[1].length_m);
+    let members: Vec<_> = scene.yarns.members(1).iter().map(|of| (of.name.as_str(), of.color)).collect();
+    assert_eq!(members, [("1", scene.yarn_colors[0]), ("2", [255; 3])]);
     assert_eq!(resolved_again(&scene), scene, "the members go along");
     // A table of their own goes before.
     let own = read_file("plated.k", program, "[yarns.\"1 2\"]\nlinear_density = \"900 tex\"\n");
@@ -112,7 +87,7 @@ fn what_cannot_run_together_is_refused_with_its_mend() {
     ];
     for (own, underlined, what, mend) in cases {
         let text = format!("schema = 1\n{TWO}[yarns.P]\n{own}\n[yarns.Q]\ntogether = [\"A\", \"A\"]\n{STRIPED}");
-        let text = text.replace("stripes = [\"A\", \"P\"]", "stripes = [\"A\", \"P\", \"Q\"]");
+        let text = text.replace("stripes = [\"A\", \"P\"]", "stripes = [\"A\", \"B\", \"P\", \"Q\"]");
         let error = Scene::from_text(&text, "bad.toml").unwrap_err();
         assert_eq!(error.underlined(), Some(underlined), "{error}");
         assert!(error.what().contains(what), "{error}");
