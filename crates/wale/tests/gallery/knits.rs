@@ -1,5 +1,6 @@
 //! Knits that curl, stretch, drape and are lace.
 
+use wale::model::LoopInfo;
 use wale::simulation::Simulation;
 
 use super::play::{Played, play_beside_others};
@@ -111,15 +112,25 @@ fn rest_shape_compensation_keeps_the_size() {
 
 /// How far the loops of a row lie above and below its mean, by their place in a repeat of so many columns \[m\].
 fn wave(simulation: &Simulation, row: u32, repeat: u32) -> f64 {
-    let network = simulation.network();
+    swing(simulation, repeat, 1, |info| (info.row == row).then_some(info.column))
+}
+
+/// The same of the loops of the first column, to the left and the right, in a repeat of so many rows.
+fn wave_of_side(simulation: &Simulation, repeat: u32) -> f64 {
+    swing(simulation, repeat, 0, |info| (info.column == 0).then_some(info.row))
+}
+
+/// How far loops lie apart along an axis, each the mean of those at its place in a repeat \[m\].
+fn swing(simulation: &Simulation, repeat: u32, axis: usize, place: impl Fn(&LoopInfo) -> Option<u32>) -> f64 {
     let frame = simulation.frame();
-    let mut heights = vec![(0.0, 0_u32); repeat as usize];
-    for info in network.loops.iter().filter(|info| info.row == row && !info.nodes.is_empty()) {
-        let mean = info.nodes.iter().map(|node| frame.positions[node.index()].y).sum::<f64>() / info.nodes.len() as f64;
-        let at = &mut heights[(info.column % repeat) as usize];
-        *at = (at.0 + mean, at.1 + 1);
+    let mut means = vec![(0.0, 0_u32); repeat as usize];
+    for info in simulation.network().loops.iter().filter(|info| !info.nodes.is_empty()) {
+        let Some(place) = place(info) else { continue };
+        let along = info.nodes.iter().map(|node| frame.positions[node.index()][axis]);
+        let at = &mut means[(place % repeat) as usize];
+        *at = (at.0 + along.sum::<f64>() / info.nodes.len() as f64, at.1 + 1);
     }
-    let means: Vec<f64> = heights.iter().filter(|at| at.1 > 0).map(|at| at.0 / f64::from(at.1)).collect();
+    let means: Vec<f64> = means.iter().filter(|at| at.1 > 0).map(|at| at.0 / f64::from(at.1)).collect();
     means.iter().copied().fold(f64::MIN, f64::max) - means.iter().copied().fold(f64::MAX, f64::min)
 }
 
@@ -131,6 +142,20 @@ fn feather_and_fan_waves() {
     println!("feather and fan: waves of {waves:.4?} m, speed {:.1} mm/s, {:?}", 1e3 * lace.speed, lace.last);
     assert!(waves.iter().all(|wave| *wave > 2.0 * lace.last.course_spacing_m), "{waves:?}");
     assert!(lace.steps.last().unwrap().largest_stretch < 1.2);
+}
+
+#[test]
+fn lace_that_cannot_curl_waves_along_its_rows_and_its_sides() {
+    for (name, [columns, rows]) in [("flame-chevron-relaxed.toml", [7, 24]), ("open-diamonds-relaxed.toml", [8, 12])] {
+        let lace = play_beside_others(name);
+        let (row, side) = (wave(&lace.simulation, rows / 2, columns), wave_of_side(&lace.simulation, rows));
+        let [wale, course] = [lace.last.wale_spacing_m, lace.last.course_spacing_m];
+        println!("{name}: {row:.4} and {side:.4} m, loops {wale:.4} by {course:.4}, {:.1} mm/s", 1e3 * lace.speed);
+        assert!(row > 0.5 * course && side > wale, "{name}: {row} {side}");
+        assert!(lace.speed < 0.03 && lace.steps.last().unwrap().largest_stretch < 1.2, "{name}");
+        // Yarn-overs stay open: the fabric is no thicker than the plates are apart.
+        assert!(lace.last.extent_m[2] < 6e-3, "{name}: {:?}", lace.last.extent_m);
+    }
 }
 
 #[test]
