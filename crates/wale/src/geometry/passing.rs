@@ -242,11 +242,11 @@ mod tests {
         // Forty yarns beside each other that hardly move, and one that is pulled far through them.
         let still: Vec<Curve> =
             (0..40).map(|k| yarn(DVec3::new(0.13, f64::from(k) + 0.5, 0.0), DVec3::X, 11 * k)).collect();
-        let torn = |z: f64| yarn(DVec3::new(0.4, 20.0, z), DVec3::new(0.003, 3.9, 0.02), 500);
+        let torn = |z: f64| yarn(DVec3::new(0.4, 20.0, z), DVec3::new(0.003, 3.85, 0.02), 500);
         let frames = [30.0, -30.0].map(|z| still.iter().cloned().chain([torn(z)]).collect::<Vec<_>>());
         let mut passages = Passages::default();
         passages.follow(&frames[0], &frames[1]);
-        assert_eq!((passages.crossings, passages.pairs().count()), (39, 39));
+        assert_eq!((passages.crossings, passages.pairs().count()), (38, 38));
     }
 
     #[test]
