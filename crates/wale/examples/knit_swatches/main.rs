@@ -210,7 +210,9 @@ fn run() -> Result<(), String> {
     let of_lace = predict(&of_lace.iter().filter(asked).collect::<Vec<_>>(), &model);
     print("charts of lace", &of_lace);
     match picture {
-        Some(picture) => plot::write(&picture, &[("fitted charts", &fitted), ("other charts", &others), ("lace", &of_lace)]),
+        Some(picture) => {
+            plot::write(&picture, &[("fitted charts", &fitted), ("other charts", &others), ("lace", &of_lace)])
+        }
         None => Ok(()),
     }
 }

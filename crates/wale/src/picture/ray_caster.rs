@@ -345,7 +345,7 @@ mod tests {
         let (points, radius) = bare.extent_points();
         let camera = Camera::framing(View::Front, Projection::Orthographic, &points, radius, 4.0 / 3.0, 0.1);
         let glass = Solid::new(SolidShape::Plane, camera.target + 0.02 * camera.back).pointing(-camera.back);
-        let wall = Solid::new(SolidShape::Plane, camera.target - 0.02 * camera.back).pointing(camera.back);
+        let wall = Solid::new(SolidShape::Plane, camera.target - 2.0 * radius * camera.back).pointing(camera.back);
         let seen = |solids: &[Solid]| render(&Subject { solids, ..bare }, &camera, &small());
         assert!(camera.distance > 0.02, "the eye is above the glass: {}", camera.distance);
         assert!(seen(&[glass]) == seen(&[]), "glass");
