@@ -1,10 +1,10 @@
 //! Relaxed sizes of real swatches, predicted with one card: width and height of knit-and-purl patterns relative to stockinette,
 //! found on periodic tiles without friction.
 //!
-//! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [NAME=VALUE …] [--most-loops N]
+//! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [NAME=VALUE …] [--least-loops N] [--most-loops N]
 //! [--fit ROUNDS] [--chart WORD] [--lace] [--shaken] [--plot FILE]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
 //! `--chart` predicts only those charts whose names have a word in them; `--fit` first fits the card again, from the numbers that it has or is given;
-//! `--lace` adds the charts of lace, with the same card; `--shaken` shakes each repeat of at most 200 loops at rest, which finds lower equilibria
+//! `--lace` adds the charts of lace, with the same card, `--lace-only` leaves the others out; `--shaken` shakes each repeat of at most 200 loops at rest, which finds lower equilibria
 //! (a fit is made without); `--plot` draws all of it. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
 //! left out.
 
@@ -34,6 +34,21 @@ struct Predicted<'a> {
 }
 
 impl Predicted<'_> {
+    /// Predicted against measured sizes, the errors, and what it took.
+    fn line(&self) -> String {
+        let ([w, h], [mw, mh]) = (self.size, self.measured());
+        let repeat = format!("{}x{}", self.swatch.repeat.column_count(), self.swatch.repeat.row_count());
+        format!(
+            "  {:<29} {repeat:>6}  {w:.3} {h:.3} against {mw:.3} {mh:.3}  {:+3.0} {:+3.0} %  {:>4} iterations{} {:>6.1} s",
+            self.swatch.name,
+            100.0 * (w / mw - 1.0),
+            100.0 * (h / mh - 1.0),
+            self.iterations,
+            if self.converged { "" } else { " NOT AT REST" },
+            self.seconds,
+        )
+    }
+
     fn measured(&self) -> [f64; 2] {
         [self.swatch.width / STOCKINETTE[0], self.swatch.height / STOCKINETTE[1]]
     }
@@ -47,8 +62,10 @@ fn predict<'a>(swatches: &[&'a Swatch], model: &Model) -> Vec<Predicted<'a>> {
         let spacing = spacing(&found);
         let size = [0, 1].map(|k| (spacing[k] - stockinette[k]).exp());
         let (iterations, converged) = (found[0].iterations, found[0].converged);
-        eprintln!("{}: {} loops, {iterations} iterations", swatch.name, swatch.repeat.loop_count());
-        Predicted { swatch, size, iterations, converged, seconds: clock.elapsed().as_secs_f64() }
+        let predicted = Predicted { swatch, size, iterations, converged, seconds: clock.elapsed().as_secs_f64() };
+        // As soon as it is known: large repeats take minutes.
+        eprintln!("{} loops{}", swatch.repeat.loop_count(), predicted.line());
+        predicted
     };
     swatches.par_iter().with_max_len(1).map(of).collect()
 }
@@ -58,19 +75,7 @@ fn print(title: &str, all: &[Predicted<'_>]) {
         return;
     }
     println!("{title}");
-    for one in all {
-        let ([w, h], [mw, mh]) = (one.size, one.measured());
-        let repeat = format!("{}x{}", one.swatch.repeat.column_count(), one.swatch.repeat.row_count());
-        println!(
-            "  {:<29} {repeat:>6}  {w:.3} {h:.3} against {mw:.3} {mh:.3}  {:+3.0} {:+3.0} %  {:>4} iterations{} {:>6.1} s",
-            one.swatch.name,
-            100.0 * (w / mw - 1.0),
-            100.0 * (h / mh - 1.0),
-            one.iterations,
-            if one.converged { "" } else { " NOT AT REST" },
-            one.seconds,
-        );
-    }
+    all.iter().for_each(|one| println!("{}", one.line()));
     let error = |k: usize| {
         let sum: f64 = all.iter().map(|one| (one.size[k] / one.measured()[k]).ln().powi(2)).sum();
         (sum / all.len() as f64).sqrt()
@@ -160,8 +165,8 @@ fn set(card: &mut LoopProportions, name: &str, value: &str) -> Result<(), String
 
 fn run() -> Result<(), String> {
     let mut path = None;
-    let (mut card, mut most, mut rounds) = (LoopProportions::thick(), usize::MAX, 0);
-    let (mut lace, mut shaken, mut word, mut picture) = (false, false, None, None);
+    let (mut card, mut least, mut most, mut rounds) = (LoopProportions::thick(), 0, usize::MAX, 0);
+    let (mut plain, mut lace, mut shaken, mut word, mut picture) = (true, false, false, None, None);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut text = || arguments.next().ok_or(format!("{argument} without a value"));
@@ -172,8 +177,10 @@ fn run() -> Result<(), String> {
         match argument.as_str() {
             "point" => card = LoopProportions::default(),
             "thick" => card = LoopProportions::thick(),
+            "--least-loops" => least = number()?,
             "--most-loops" => most = number()?,
             "--lace" => lace = true,
+            "--lace-only" => (lace, plain) = (true, false),
             "--shaken" => shaken = true,
             "--plot" => picture = Some(PathBuf::from(text()?)),
             "--chart" => word = Some(text()?),
@@ -196,12 +203,14 @@ fn run() -> Result<(), String> {
         }
     }
     let asked = |swatch: &&Swatch| {
-        swatch.repeat.loop_count() <= most && word.as_ref().is_none_or(|word| swatch.name.contains(word))
+        (least..=most).contains(&swatch.repeat.loop_count())
+            && word.as_ref().is_none_or(|word| swatch.name.contains(word))
     };
     let model = Model { shaken, ..Model::new(card) };
     let [wale, course] = spacing(&model.relaxed(&wale::pattern::Chart::stockinette())).map(f64::exp);
     println!("stockinette: wale {wale:.4}, course {course:.4} of the length of a loop");
-    let (fitted, others): (Vec<&Swatch>, Vec<&Swatch>) = all.iter().filter(asked).partition(|swatch| swatch.fitted);
+    let (fitted, others): (Vec<&Swatch>, Vec<&Swatch>) =
+        all.iter().filter(|_| plain).filter(asked).partition(|swatch| swatch.fitted);
     let fitted = predict(&fitted, &model);
     print("fitted charts", &fitted);
     let others = predict(&others, &model);
