@@ -311,3 +311,27 @@ fn clasps(network: &Network) -> Vec<f64> {
     }
     sides
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{LoopProportions, YarnCard};
+    use crate::pattern::{Chart, Stitch, Working, knit};
+
+    #[test]
+    fn a_long_float_is_looked_for_in_pieces_and_finds_the_same() {
+        let float = [vec![Stitch::Knit], vec![Stitch::Slip { in_front: false }; 38], vec![Stitch::Knit]].concat();
+        let rows = (0..12).map(|row| if row == 5 { float.clone() } else { vec![Stitch::Knit; 40] });
+        let (chart, yarn) = (Chart::new(rows.collect()).unwrap(), YarnCard::unit());
+        let network = knit::fabric(&chart, Working::default(), &LoopProportions::default().card(&yarn, 1.0));
+        let mut pieces = Strands::new(&network, &Yarns::from(&yarn));
+        let mut whole = Strands { long: f64::INFINITY, ..pieces.clone() };
+        let found = |strands: &mut Strands| {
+            let found = strands.find(|node| network.position[node], |_| DVec3::ZERO, 1e-3, 1.0).to_vec();
+            (found, strands.pairs.len())
+        };
+        let ((a, few), (b, many)) = (found(&mut pieces), found(&mut whole));
+        assert!(!a.is_empty() && a == b, "{} {}", a.len(), b.len());
+        assert!(4 * few < many, "{few} {many}");
+    }
+}

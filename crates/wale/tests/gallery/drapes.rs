@@ -63,7 +63,7 @@ fn fabrics_of_one_yarn_drape_differently() {
 }
 
 #[test]
-#[ignore = "ten minutes; small pieces of both laces are let loose below"]
+#[ignore = "four minutes of two cores; small pieces of both laces are let loose below"]
 fn two_more_laces_drape_and_no_yarn_passes_through_another() {
     // They curl, which open diamonds hardly does.
     assert!(drape(["feather-and-fan", "flame-chevron"]).iter().all(|part| (0.2..0.4).contains(part)));
