@@ -242,11 +242,14 @@ mod tests {
         // Forty yarns beside each other that hardly move, and one that is pulled far through them.
         let still: Vec<Curve> =
             (0..40).map(|k| yarn(DVec3::new(0.13, f64::from(k) + 0.5, 0.0), DVec3::X, 11 * k)).collect();
-        let torn = |z: f64| yarn(DVec3::new(0.4, 20.0, z), DVec3::new(0.003, 3.85, 0.02), 500);
-        let frames = [30.0, -30.0].map(|z| still.iter().cloned().chain([torn(z)]).collect::<Vec<_>>());
-        let mut passages = Passages::default();
-        passages.follow(&frames[0], &frames[1]);
-        assert_eq!((passages.crossings, passages.pairs().count()), (38, 38));
+        let torn = |by: f64| yarn(DVec3::new(0.4 + by, 20.0 + by, by), DVec3::new(0.003, 3.85, 0.02), 500);
+        let after = [30.0, -30.0].map(|by| still.iter().cloned().chain([torn(by)]).collect::<Vec<_>>());
+        let before = [30.0, -30.0].map(|by| std::iter::once(torn(by)).chain(still.iter().cloned()).collect::<Vec<_>>());
+        for frames in [after, before] {
+            let mut passages = Passages::default();
+            passages.follow(&frames[0], &frames[1]);
+            assert_eq!((passages.crossings, passages.pairs().count()), (38, 38));
+        }
     }
 
     #[test]
