@@ -26,8 +26,10 @@ pub struct Bench {
 pub enum Subject {
     /// A garter swatch falling on a sphere, at three sizes
     Swatch,
-    /// Garter, lace and other patterns side by side, and how long 100,000 loops of each take to lay out
+    /// Garter, lace and other patterns side by side
     Patterns,
+    /// How long 100,000 loops take to lay out: of every named pattern, written instructions, a machine's program, a weave
+    Layout,
     /// Factors against conjugate gradients, at the sizes around which one takes over from the other
     Solver,
 }

@@ -162,23 +162,11 @@ fn frame(simulation: &mut Simulation) -> Result<f64, Failure> {
     Ok(began.elapsed().as_secs_f64())
 }
 
-/// Wall time to lay out a fabric of about so many loops \[s\], the best of three, and its loops.
+/// The scene: about as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
 ///
 /// # Errors
 /// When there is no such pattern.
-pub fn lay_out(pattern: &str, loops: u32) -> Result<(f64, usize), Failure> {
-    let scene = scene(pattern, 4 * loops)?;
-    let mut best = (f64::INFINITY, 0);
-    for _ in 0..3 {
-        let began = Instant::now();
-        let network = std::hint::black_box(scene.structure.network(&scene.fabric));
-        best = (began.elapsed().as_secs_f64().min(best.0), network.loops.len());
-    }
-    Ok(best)
-}
-
-/// The scene: about as many rows as columns, four nodes a loop, over a sphere half as wide as itself.
-fn scene(pattern: &str, nodes: u32) -> Result<Scene, Failure> {
+pub(super) fn scene(pattern: &str, nodes: u32) -> Result<Scene, Failure> {
     let side = (f64::from(nodes) / 4.0).sqrt().round().max(4.0);
     let width = side * 5e-3;
     let repeat = named_pattern(pattern).map_err(|error| Failure::new(Code::Usage, error))?;

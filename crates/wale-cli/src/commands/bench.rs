@@ -4,8 +4,9 @@ use serde_json::json;
 use wale::model::LinearSolver;
 
 use crate::arguments::{Bench, Subject};
+use crate::bench::layout::{BAR, LOOPS, LaidOut, all};
 use crate::bench::patterns::compare;
-use crate::bench::swatch::{Measured, lay_out, measure};
+use crate::bench::swatch::{Measured, measure};
 use crate::bench::triad;
 use crate::exit::Failure;
 use crate::output::{bytes, grouped, note, span};
@@ -22,8 +23,6 @@ const SOLVER_STEPS: usize = 20;
 /// and deep stacks, several yarns.
 const PATTERNS: [&str; 7] =
     ["stockinette", "garter", "mesh", "feather and fan", "fisherman's rib", "bramble", "stranded check"];
-/// Loops that are laid out.
-const LOOPS: u32 = 100_000;
 
 /// Sizes around which conjugate gradients take over from factors \[nodes\].
 const SOLVER_NODES: [u32; 4] = [1000, 2000, 4000, 8000];
@@ -34,6 +33,7 @@ pub fn bench(arguments: &Bench) -> Result<(), Failure> {
     match arguments.subject {
         Subject::Swatch => swatch(arguments, threads),
         Subject::Patterns => patterns(arguments, threads),
+        Subject::Layout => layout(arguments, threads),
         Subject::Solver => solver(arguments, threads),
     }
 }
@@ -74,32 +74,26 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
-    let laid_out = PATTERNS.iter().map(|pattern| lay_out(pattern, LOOPS)).collect::<Result<Vec<_>, _>>()?;
     if !arguments.manner.quiet {
         note(&format!("{} swatches falling on spheres, a step of each in turn …", PATTERNS.len()));
     }
     let compared = compare(&PATTERNS, arguments.nodes / 3, STEPS)?;
     if arguments.json {
-        let list: Vec<_> = compared
-            .iter()
-            .zip(&laid_out)
-            .map(|(swatch, (seconds, loops))| json!({ "layout_loops": loops, "layout_s": seconds, "swatch": swatch }))
-            .collect();
-        return output::json(&json!({ "threads": threads, "patterns": list }));
+        return output::json(&json!({ "threads": threads, "patterns": compared }));
     }
     say!(
         "swatches falling on spheres, a step of 1 ms of each in turn, on {threads} threads; a stitch and a loop against one of {}:",
         PATTERNS[0]
     )?;
     say!(
-        "                       stitches    loops    nodes  node·steps/s  Newton  linear  a step for  a step for      of them   one of    an iteration  layout of"
+        "                       stitches    loops    nodes  node·steps/s  Newton  linear  a step for  a step for      of them   one of    an iteration"
     )?;
     say!(
-        "  pattern                                                                        a stitch    a loop      yo, dec, …  these costs   for a stitch  100,000 loops"
+        "  pattern                                                                        a stitch    a loop      yo, dec, …  these costs   for a stitch"
     )?;
-    for (swatch, (seconds, loops)) in compared.iter().zip(&laid_out) {
+    for swatch in &compared {
         say!(
-            "  {:<20} {:>8} {:>8} {:>8} {:>13} {:>7.1} {:>7.1} {:>11.2} {:>11.2} {:>10.0} % {:>12} {:>14.2} {:>14}",
+            "  {:<20} {:>8} {:>8} {:>8} {:>13} {:>7.1} {:>7.1} {:>11.2} {:>11.2} {:>10.0} % {:>12} {:>14.2}",
             swatch.pattern,
             grouped(swatch.stitches as u64),
             grouped(swatch.loops as u64),
@@ -112,10 +106,49 @@ fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
             100.0 * swatch.special_part,
             swatch.special_cost.map_or_else(|| "–".to_owned(), |cost| format!("{cost:.2}")),
             swatch.iteration_cost,
-            span(seconds * f64::from(LOOPS) / *loops as f64)
         )?;
     }
     Ok(())
+}
+
+fn layout(arguments: &Bench, threads: usize) -> Result<(), Failure> {
+    if !arguments.manner.quiet {
+        note(&format!("fabrics of {} loops, one after the other …", grouped(u64::from(LOOPS))));
+    }
+    let before = triad();
+    let mut fabrics = all(LOOPS)?;
+    let bandwidth = before.max(triad());
+    fabrics.sort_by(|a, b| b.for_loops().total_cmp(&a.for_loops()));
+    let longest = fabrics.first().map_or(f64::NAN, LaidOut::for_loops);
+    if arguments.json {
+        return output::json(&json!({
+            "threads": threads,
+            "triad_bytes_per_s": bandwidth,
+            "bar_s": BAR,
+            "longest_s": longest,
+            "fabrics": fabrics,
+        }));
+    }
+    say!("memory triad on {threads} threads: {:.1} GB/s", 1e-9 * bandwidth)?;
+    say!("from what a fabric is given as to its network, the longest first:")?;
+    say!("  fabric                       loops    nodes   reading   network   both for {}", grouped(u64::from(LOOPS)))?;
+    for fabric in &fabrics {
+        say!(
+            "  {:<25} {:>8} {:>8} {:>9} {:>9} {:>18}",
+            fabric.fabric,
+            grouped(fabric.loops as u64),
+            grouped(fabric.nodes as u64),
+            fabric.read_s.map_or_else(|| "–".to_owned(), seconds),
+            seconds(fabric.network_s),
+            seconds(fabric.for_loops()),
+        )?;
+    }
+    let met = if longest < BAR { "met" } else { "NOT met" };
+    say!("under {} for {} loops of any: {met}", span(BAR), grouped(u64::from(LOOPS)))
+}
+
+fn seconds(seconds: f64) -> String {
+    format!("{seconds:.2} s")
 }
 
 fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
