@@ -97,7 +97,7 @@ pub struct Patterns {
     /// Print JSON
     #[arg(long)]
     pub json: bool,
-    /// Draw the pattern, or each of the library, into a folder; large repeats take minutes
+    /// Draw the pattern, or each of them, into a folder; large repeats take minutes
     #[arg(long, value_name = "FOLDER")]
     pub pictures: Option<PathBuf>,
 }

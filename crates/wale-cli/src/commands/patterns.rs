@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::json;
 use wale::pattern::instructions::write_instructions;
 use wale::pattern::library::patterns as library;
-use wale::pattern::named::{PLAIN, named_pattern};
+use wale::pattern::named::{PLAIN, named_pattern, names};
 use wale::pattern::symbols::write_symbols;
 use wale::pattern::{Chart, Stitch, Working};
 
@@ -17,7 +17,7 @@ use crate::{output, say};
 /// Lists or shows them.
 pub fn patterns(arguments: &Patterns) -> Result<(), Failure> {
     if let Some(folder) = &arguments.pictures {
-        let all = || library().iter().map(|pattern| pattern.name.clone()).collect();
+        let all = || names().map(str::to_owned).collect();
         let names = arguments.name.as_ref().map_or_else(all, |name| vec![name.to_lowercase()]);
         return pattern_pictures::draw(&names, folder);
     }

@@ -8,6 +8,7 @@ use super::{Failure, exactly_one, si};
 use crate::model::{WovenCard, Yarns};
 use crate::pattern::Structure;
 use crate::pattern::instructions::MOST_YARNS;
+use crate::pattern::weave::peirce::Jammed;
 use crate::pattern::weave::wif::{LARGEST_WIF, Wif};
 use crate::pattern::weave::{
     BiasCut, Draft, DraftError, Selvedge, Thread, WifErrorReason, Woven, named, named_weave, peirce, read_draft,
@@ -19,11 +20,16 @@ use crate::scene::units::{Bounds, Dimension, Quantity};
 
 const HERE: &str = "fabric.weave";
 
+/// Stands for a distance of threads that nothing says \[m\]: far, so that a piece has few.
+const UNSET: f64 = 1.0;
+
 /// What a scene weaves: the draft at its size, the names of its yarns, its sett, and the files it was read from.
 pub(super) struct Drafted {
     pub woven: Woven,
     pub yarns: Vec<String>,
     pub spacing: [f64; 2],
+    /// That nothing says what the sett is; the yarns will tell how close it can be.
+    unset: Option<Complaint>,
     pub inputs: Vec<PathBuf>,
 }
 
@@ -67,7 +73,7 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
     if bias.is_none() {
         counts(text)?;
     }
-    let spacing = spacing(&draft, text)?;
+    let (spacing, unset) = spacing(&draft, text)?;
     let draft = sized(draft, text, bias.map(|cut| cut.reach(spacing)))?;
     let (draft, yarns) = threads(draft, text)?;
     let mut woven = Woven::new(draft, spacing);
@@ -78,7 +84,7 @@ pub(super) fn resolve(text: &WeaveText, directory: Option<&Path>) -> Result<Draf
     for (fringe, said) in woven.fringe.iter_mut().zip([text.warp_fringe, text.weft_fringe]) {
         *fringe = si(said).unwrap_or(*fringe);
     }
-    Ok(Drafted { woven, yarns, spacing, inputs })
+    Ok(Drafted { woven, yarns, spacing, unset, inputs })
 }
 
 fn wif(name: &str, directory: Option<&Path>) -> Result<(Wif, PathBuf), Failure> {
@@ -155,13 +161,14 @@ fn sized(draft: Draft, text: &WeaveText, reach: Option<[f64; 2]>) -> Result<Draf
     draft.repeat(ends as usize, picks as usize).map_err(refused)
 }
 
-/// Distance of ends, and of picks \[m\]: as the scene says, or as the draft does on the mean of its threads.
-fn spacing(draft: &Draft, text: &WeaveText) -> Result<[f64; 2], Complaint> {
+/// Distance of ends, and of picks \[m\]: as the scene says, or as the draft does on the mean of its threads. Where nothing does, the
+/// complaint of it beside distances that are none.
+fn spacing(draft: &Draft, text: &WeaveText) -> Result<([f64; 2], Option<Complaint>), Complaint> {
     let systems = [
         ("end_spacing", text.end_spacing, "end_count", text.end_count, &draft.warp),
         ("pick_spacing", text.pick_spacing, "pick_count", text.pick_count, &draft.weft),
     ];
-    let mut spacing = [0.0; 2];
+    let (mut spacing, mut unset) = ([UNSET; 2], None);
     for (spacing, (key, said, count_key, count, threads)) in spacing.iter_mut().zip(systems) {
         let of_file: Option<f64> = threads.iter().map(|thread: &Thread| thread.spacing).sum();
         *spacing = match (si(said), si(count), of_file) {
@@ -176,12 +183,15 @@ fn spacing(draft: &Draft, text: &WeaveText) -> Result<[f64; 2], Complaint> {
             (_, Some(count), _) => 1.0 / count,
             (_, _, Some(sum)) => sum / threads.len() as f64,
             _ => {
-                return Err(Complaint::new(HERE, format!("nothing says how close the threads lie: no {key}"))
-                    .mend(format!("add {key} = \"0.5 mm\" or {count_key} = \"20 /cm\"")));
+                let in_file = if text.file.is_some() { ", and no spacing with its unit in the file" } else { "" };
+                let nothing = format!("nothing says how close the threads lie: no {key}{in_file}");
+                let complaint = Complaint::new(HERE, nothing);
+                unset.get_or_insert(complaint.mend(format!("add {key} = \"0.5 mm\" or {count_key} = \"20 /cm\"")));
+                UNSET
             }
         };
     }
-    Ok(spacing)
+    Ok((spacing, unset))
 }
 
 /// The draft with the yarns and colours that the scene gives its threads, and the names of the yarns.
@@ -239,6 +249,15 @@ pub(super) fn card(
     };
     let draft = &drafted.woven.draft;
     let [warp, weft] = [thickest(&draft.warp), thickest(&draft.weft)];
+    if let Some(unset) = &drafted.unset {
+        let too_close = 0.1 * warp.radius.min(weft.radius);
+        let jams = peirce::geometry(draft, [warp, weft], [too_close; 2]).err();
+        let why = jams.map(|Jammed { jammed: [closest, _], diameter: [d, e], .. }| {
+            let [closest, d, e] = [closest, d, e].map(|length| 1e3 * length);
+            format!("this weave of yarns {d:.4} mm and {e:.4} mm thick jams at {closest:.4} mm, if ends and picks lie equally close")
+        });
+        return Err(why.iter().fold(unset.clone(), |complaint, why| complaint.why(why)));
+    }
     let geometry = peirce::geometry(draft, [warp, weft], drafted.spacing).map_err(|jammed| {
         Complaint::new(HERE, jammed.to_string())
             .why("the yarns of a jammed weave have no straight part left [Peirce 1937]")

@@ -111,6 +111,15 @@ fn a_wif_brings_its_colours_and_its_sett() {
     // The file's sett jams with a thicker yarn, and the error says at what.
     let error = write("[yarns.warp]\ndiameter = \"0.5 mm\"\nlinear_density = \"90 tex\"\n").unwrap_err();
     assert!(error.to_string().contains("it jams at"), "{error}");
+    // A file without units has no sett; the error says how close it can be.
+    std::fs::write(folder.join("plain.wif"), wif.replace("Units=centimeters\n", "")).unwrap();
+    let error = write("").unwrap_err();
+    assert!(error.to_string().contains("no end_spacing, and no spacing with its unit in the file"), "{error}");
+    let why = error.why().unwrap();
+    let (_, closest) = why.split_once("jams at ").unwrap();
+    let closest: f64 = closest.split_once(" mm").unwrap().0.parse().unwrap();
+    let at = |factor: f64| write(&format!("end_spacing = \"{0} mm\"\npick_spacing = \"{0} mm\"\n", factor * closest));
+    assert!(at(1.01).is_ok() && at(0.99).is_err(), "{why}");
     let wrong = wif.replace("[TREADLING]\n1=1", "[TREADLING]\n1=7");
     std::fs::write(folder.join("plain.wif"), &wrong).unwrap();
     let error = write("").unwrap_err();
