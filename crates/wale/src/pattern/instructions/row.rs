@@ -62,7 +62,13 @@ fn sequence(line: &mut Line<'_>, end: End, depth: usize, yarns: &mut Yarns) -> P
         };
         let place = start..line.end_of_last();
         let source = line.source(&place);
-        parts.push(Part { kind, place, source });
+        // Of yarns that are taken in hand one after the other the last is knitted with; a repeat of many would be long work for nothing.
+        let is_yarn = |part: &Part| matches!(part.kind, PartKind::With(_));
+        let part = Part { kind, place, source };
+        if is_yarn(&part) {
+            parts.pop_if(|before| is_yarn(before));
+        }
+        parts.push(part);
     }
     Ok(parts)
 }

@@ -385,6 +385,13 @@ fn changing_yarns_over_and_over_is_nothing_to_repeat() {
         assert!(place.contains("with B"), "{place}");
     }
     assert!(read_instructions("Cast on 4\nRow 1: [with B, k1, with A, k1] 2 times\n", None).is_ok());
+    // Of many yarns the last is knitted with, and the others are no work: a million times 30,000 changes would take minutes.
+    let changes = "with A, with B, ".repeat(15_000);
+    let read = |changes: &str| {
+        let text = format!("Cast on 1000000\nRow 1: [with A, k1, {changes}k1] 500000 times\n");
+        read_instructions(&text, None).unwrap()
+    };
+    assert_eq!(read(&changes), read("with B, "));
 }
 
 #[test]
