@@ -2,10 +2,10 @@
 //! found on periodic tiles without friction.
 //!
 //! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [NAME=VALUE …] [--least-loops N] [--most-loops N]
-//! [--fit ROUNDS] [--chart WORD] [--lace] [--shaken] [--plot FILE]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
+//! [--fit ROUNDS] [--chart WORD] [--lace] [--shaken] [--off-needles PITCH,PULL,FRICTION] [--plot FILE]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
 //! `--chart` predicts only those charts whose names have a word in them; `--fit` first fits the card again, from the numbers that it has or is given;
 //! `--lace` adds the charts of lace, with the same card, `--lace-only` leaves the others out; `--shaken` shakes each repeat of at most 200 loops at rest, which finds lower equilibria
-//! (a fit is made without); `--plot` draws all of it. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
+//! (a fit is made without); `--off-needles` takes each repeat from its needles against friction instead, as `wale::dynamics::off_needles` says; `--plot` draws all of it. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
 //! left out.
 
 mod fit;
@@ -18,6 +18,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use rayon::prelude::*;
+use wale::dynamics::off_needles::OffNeedles;
 use wale::model::LoopProportions;
 
 use fit::{Fit, numbers};
@@ -163,10 +164,19 @@ fn set(card: &mut LoopProportions, name: &str, value: &str) -> Result<(), String
     Ok(())
 }
 
+/// Pitch in loop lengths, pull and friction in `k_b/ℓ²`.
+fn off_needles(text: &str) -> Result<OffNeedles, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(str::parse).collect();
+    match numbers.as_deref() {
+        Ok(&[pitch, take_down, friction]) => Ok(OffNeedles { pitch, take_down, friction }),
+        _ => Err(format!("--off-needles {text}: three numbers, as in 0.35,30,inf")),
+    }
+}
+
 fn run() -> Result<(), String> {
     let mut path = None;
     let (mut card, mut least, mut most, mut rounds) = (LoopProportions::thick(), 0, usize::MAX, 0);
-    let (mut plain, mut lace, mut shaken, mut word, mut picture) = (true, false, false, None, None);
+    let (mut plain, mut lace, mut shaken, mut word, mut picture, mut needles) = (true, false, false, None, None, None);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut text = || arguments.next().ok_or(format!("{argument} without a value"));
@@ -182,6 +192,7 @@ fn run() -> Result<(), String> {
             "--lace" => lace = true,
             "--lace-only" => (lace, plain) = (true, false),
             "--shaken" => shaken = true,
+            "--off-needles" => needles = Some(off_needles(&text()?)?),
             "--plot" => picture = Some(PathBuf::from(text()?)),
             "--chart" => word = Some(text()?),
             "--fit" => rounds = number()?,
@@ -206,7 +217,7 @@ fn run() -> Result<(), String> {
         (least..=most).contains(&swatch.repeat.loop_count())
             && word.as_ref().is_none_or(|word| swatch.name.contains(word))
     };
-    let model = Model { shaken, ..Model::new(card) };
+    let model = Model { shaken, needles, ..Model::new(card) };
     let [wale, course] = spacing(&model.relaxed(&wale::pattern::Chart::stockinette())).map(f64::exp);
     println!("stockinette: wale {wale:.4}, course {course:.4} of the length of a loop");
     let (fitted, others): (Vec<&Swatch>, Vec<&Swatch>) =

@@ -1,6 +1,7 @@
 //! Relaxed sizes of patterns relative to stockinette, by periodic tiles without friction.
 
 use rayon::prelude::*;
+use wale::dynamics::off_needles::{OffNeedles, off_needles};
 use wale::dynamics::tile_equilibrium::{TileEquilibrium, TileSettings, relax_from_starts, relax_tile_from};
 use wale::dynamics::tile_shaking::shaken;
 use wale::model::{KnitCard, LoopProportions, Network, YarnCard};
@@ -34,6 +35,8 @@ pub struct Model {
     pub settings: TileSettings,
     /// Whether repeats at rest are shaken.
     pub shaken: bool,
+    /// How repeats come off their needles, where they are not taken as washed.
+    pub needles: Option<OffNeedles>,
 }
 
 impl Model {
@@ -50,7 +53,7 @@ impl Model {
             max_iterations: 1500,
             tolerance: 1e-4,
         };
-        Self { proportions, settings, shaken: false }
+        Self { proportions, settings, shaken: false, needles: None }
     }
 
     pub fn card(&self) -> KnitCard {
@@ -64,6 +67,9 @@ impl Model {
     /// Equilibria of a repeat, the lowest first.
     pub fn relaxed(&self, chart: &Chart) -> Vec<TileEquilibrium> {
         let (tile, card, loops) = (self.tile(chart), self.card(), chart.loop_count());
+        if let Some(how) = &self.needles {
+            return vec![off_needles(&tile, &YarnCard::unit(), &card, &self.settings, how)];
+        }
         let mut found = relax_from_starts(&tile, &YarnCard::unit(), &card, &self.settings, starts(loops));
         if self.shaken {
             found[0] = shaken(&tile, &YarnCard::unit(), &card, &self.settings, found[0].clone(), shakes(loops));

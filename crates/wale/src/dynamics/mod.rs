@@ -6,6 +6,7 @@ pub mod grips;
 pub mod implicit_euler;
 pub mod linear;
 pub mod loop_shapes;
+pub mod off_needles;
 mod remaining;
 mod scatter;
 mod selected;

@@ -194,6 +194,7 @@ impl<'a> TileContacts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dynamics::off_needles::Conditions;
     use crate::dynamics::tile_equilibrium::{TileSettings, relax_tile};
     use crate::dynamics::tile_system::TileSystem;
     use crate::pattern::knit;
@@ -255,7 +256,8 @@ mod tests {
         let part = |of: &[NearSegments], direction: &dyn Fn(&mut [f64])| {
             let settings = TileSettings::of(&scene.fabric);
             let elements = |map: &mut TileCoordinates| contacts.elements(of, map);
-            let mut system = TileSystem::touching(&tile, &scene.yarns, &scene.fabric, &settings, elements);
+            let mut system =
+                TileSystem::touching(&tile, &scene.yarns, &scene.fabric, &settings, &Conditions::default(), elements);
             let unknowns = system.coordinates.unknowns(world.clone());
             let mut step = vec![0.0; unknowns.len()];
             direction(&mut step);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use wale_numerics::trust::Trust;
 
+use super::off_needles::Conditions;
 use super::tile_contacts::TileContacts;
 use super::tile_descent::{Descent, FIRST_SHIFT, RULE};
 use super::tile_stiffness::bending_and_length;
@@ -153,22 +154,37 @@ pub fn relax_tile_from(
     settings: &TileSettings,
     start: Vec<f64>,
 ) -> TileEquilibrium {
-    let (yarns, card) = (yarns.into(), card.into());
-    let (bending, length) = bending_and_length(network, &yarns, &card);
+    relax_under(network, &yarns.into(), &card.into(), settings, start, &Conditions::default())
+}
+
+/// The same under other conditions than a fabric at rest is in.
+///
+/// # Panics
+/// As there.
+pub(super) fn relax_under(
+    network: &Network,
+    yarns: &Yarns,
+    card: &FabricCard,
+    settings: &TileSettings,
+    start: Vec<f64>,
+    conditions: &Conditions,
+) -> TileEquilibrium {
+    let (bending, length) = bending_and_length(network, yarns, card);
     let force = bending / (length * length);
-    let mut system = TileSystem::of(network, &yarns, &card, settings);
+    let mut system = TileSystem::touching(network, yarns, card, settings, conditions, |_| Default::default());
     assert_eq!(start.len(), system.coordinates.unknown_len());
     let n = system.coordinates.own().len();
     let mut unknowns = system.coordinates.unknowns(start);
     let mut trust = Trust::new(RULE, FIRST_SHIFT, 1.0);
-    let contacts = settings.strand_contact.then(|| TileContacts::of(network, &card)).flatten();
+    let contacts = settings.strand_contact.then(|| TileContacts::of(network, card)).flatten();
     let (mut iterations, mut world) = (0, Vec::new());
     let (energy, residual) = loop {
         let mut leash = f64::INFINITY;
         if let Some(contacts) = &contacts {
             system.coordinates.place(&unknowns, &mut world);
             let near = contacts.near(&world, [unknowns[n], unknowns[n + 1]]);
-            system = TileSystem::touching(network, &yarns, &card, settings, |map| contacts.elements(&near, map));
+            let elements = |map: &mut TileCoordinates| contacts.elements(&near, map);
+            system = TileSystem::touching(network, yarns, card, settings, conditions, elements);
             leash = contacts.leash();
         }
         let left = TileSettings { max_iterations: settings.max_iterations - iterations, ..*settings };
@@ -199,7 +215,7 @@ pub fn relax_tile_from(
 }
 
 /// The layout, disturbed a little.
-fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64> {
+pub(super) fn disturbed(network: &Network, settings: &TileSettings, length: f64) -> Vec<f64> {
     let mut start = TileCoordinates::new(network).initial(network);
     displace(&mut start[..BLOCK * network.node_count()], settings.noise * length, settings.seed);
     for of_loop in &network.loops {

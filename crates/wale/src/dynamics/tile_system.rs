@@ -5,12 +5,14 @@ use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
+use super::off_needles::Conditions;
 use super::strands::{PART, first_meeting};
 use super::tile_contacts::Contacts;
 use super::tile_equilibrium::TileSettings;
 use super::tile_places::places_of;
 use super::tile_stiffness::bending_and_length;
 use crate::energy::Foundation;
+use crate::energy::friction::AnchoredSpring;
 use crate::fabric::coordinates::{BLOCK, Dof, dof};
 use crate::fabric::elements::{ElementSet, Elements};
 use crate::fabric::{Mechanics, TileCoordinates};
@@ -23,6 +25,9 @@ pub(super) struct TileSystem {
     mechanics: Mechanics,
     bed: Elements<Foundation, 1>,
     contacts: Contacts,
+    rubbing: Elements<AnchoredSpring, 1>,
+    /// What pulls at the numbers of the plane \[N\].
+    pull: [f64; 2],
     /// Which own slots are unknowns; the others are held.
     free: Vec<bool>,
     second: Bordered,
@@ -46,10 +51,10 @@ impl TileSystem {
     /// # Panics
     /// If the tile is too large for memory.
     pub fn of(network: &Network, yarns: &Yarns, card: &FabricCard, settings: &TileSettings) -> Self {
-        Self::touching(network, yarns, card, settings, |_| Contacts::default())
+        Self::touching(network, yarns, card, settings, &Conditions::default(), |_| Contacts::default())
     }
 
-    /// The same with contacts of segments, made over its coordinates.
+    /// The same under other conditions and with contacts of segments, made over its coordinates.
     ///
     /// # Panics
     /// If the tile is too large for memory.
@@ -58,14 +63,17 @@ impl TileSystem {
         yarns: &Yarns,
         card: &FabricCard,
         settings: &TileSettings,
+        conditions: &Conditions,
         contacts: impl FnOnce(&mut TileCoordinates) -> Contacts,
     ) -> Self {
         let (bending, length) = bending_and_length(network, yarns, card);
         let bed = settings.bed * (bending / length.powi(3));
-        let held = [card.woven().is_some(); 2];
+        let held = [card.woven().is_some() || conditions.width_held, card.woven().is_some()];
         let mut coordinates = TileCoordinates::new(network);
         let contacts = contacts(&mut coordinates);
-        Self::with(network, yarns, card, bed, coordinates, held, contacts).expect("a tile fits in memory")
+        let rubbing = conditions.rubbing(network, &coordinates);
+        let system = Self::with(network, yarns, card, bed, coordinates, held, contacts, rubbing);
+        Self { pull: [0.0, conditions.pull], ..system.expect("a tile fits in memory") }
     }
 
     /// Over given coordinates, of which numbers of the plane may be held; `bed` \[N/m\] is the stiffness under every node.
@@ -80,6 +88,7 @@ impl TileSystem {
         mut coordinates: TileCoordinates,
         held: [bool; 2],
         contacts: Contacts,
+        rubbing: Elements<AnchoredSpring, 1>,
     ) -> Result<Self, CholeskyError> {
         let mechanics = Mechanics::new(network, yarns, card, &mut coordinates);
         let springs = self::bed(network, bed);
@@ -97,7 +106,8 @@ impl TileSystem {
             free[coordinates.own().slot(pass)] = false;
         }
         let own = |dof: Dof| coordinates.source(dof).of as usize;
-        let (pattern, places) = places_of(&sets(&mechanics, &springs, &contacts), coordinates.own().block_count(), own);
+        let (pattern, places) =
+            places_of(&sets(&mechanics, &springs, &contacts, &rubbing), coordinates.own().block_count(), own);
         let second = Bordered::new(pattern, &free)?;
         Ok(Self {
             gradient: vec![0.0; free.len()],
@@ -111,6 +121,8 @@ impl TileSystem {
             mechanics,
             bed: springs,
             contacts,
+            rubbing,
+            pull: [0.0; 2],
             free,
             second,
             places,
@@ -121,7 +133,8 @@ impl TileSystem {
     pub fn energy(&mut self, unknowns: &[f64]) -> f64 {
         let mut world = std::mem::take(&mut self.world);
         self.coordinates.place(unknowns, &mut world);
-        let energy = sets(&self.mechanics, &self.bed, &self.contacts).iter().map(|set| set.total(&world)).sum();
+        let all = sets(&self.mechanics, &self.bed, &self.contacts, &self.rubbing);
+        let energy = all.iter().map(|set| set.total(&world)).sum::<f64>() - self.work_of_pull(unknowns);
         self.world = world;
         energy
     }
@@ -134,11 +147,22 @@ impl TileSystem {
         self.period_gradient = [0.0; 2];
         self.second.clear();
         let Self {
-            coordinates, mechanics, bed, contacts, free, second, places, gradient, period_gradient, world, ..
+            coordinates,
+            mechanics,
+            bed,
+            contacts,
+            rubbing,
+            free,
+            second,
+            places,
+            gradient,
+            period_gradient,
+            world,
+            ..
         } = self;
         let mut places = places.iter();
         let mut energy = 0.0;
-        for set in sets(mechanics, bed, contacts) {
+        for set in sets(mechanics, bed, contacts, rubbing) {
             energy += set.visit(world, convexity, &mut |stencil, slope, curvature| {
                 if slope.is_empty() {
                     places = places.as_slice()[stencil.len() * stencil.len()..].iter();
@@ -167,8 +191,15 @@ impl TileSystem {
                 }
             });
         }
+        self.period_gradient.iter_mut().zip(self.pull).for_each(|(gradient, pull)| *gradient -= pull);
         self.hold();
-        energy
+        energy - self.work_of_pull(unknowns)
+    }
+
+    /// What the pull has done since the periods were nothing \[J\].
+    fn work_of_pull(&self, unknowns: &[f64]) -> f64 {
+        let n = self.coordinates.own().len();
+        self.pull[0] * unknowns[n] + self.pull[1] * unknowns[n + 1]
     }
 
     /// Whether the second number of the plane is held, of a system whose first is.
@@ -253,7 +284,7 @@ impl TileSystem {
     pub fn first_along(&mut self, unknowns: &[f64], motion: &[f64]) -> f64 {
         self.coordinates.place(unknowns, &mut self.world);
         let mut sum = 0.0;
-        for set in sets(&self.mechanics, &self.bed, &self.contacts) {
+        for set in sets(&self.mechanics, &self.bed, &self.contacts, &self.rubbing) {
             set.visit_gradient(&self.world, &mut |stencil, gradient| {
                 sum += stencil.iter().zip(gradient).map(|(&dof, g)| g * motion[dof as usize]).sum::<f64>();
             });
@@ -265,7 +296,7 @@ impl TileSystem {
     pub fn second_along(&mut self, unknowns: &[f64], one: &[f64], other: &[f64]) -> f64 {
         self.coordinates.place(unknowns, &mut self.world);
         let mut sum = 0.0;
-        for set in sets(&self.mechanics, &self.bed, &self.contacts) {
+        for set in sets(&self.mechanics, &self.bed, &self.contacts, &self.rubbing) {
             set.visit(&self.world, 0.0, &mut |stencil, _, curvature| {
                 for (j, &b) in stencil.iter().enumerate() {
                     let column: f64 = stencil.iter().enumerate().map(|(i, &a)| one[a as usize] * curvature(i, j)).sum();
@@ -347,9 +378,10 @@ fn sets<'a>(
     mechanics: &'a Mechanics,
     bed: &'a Elements<Foundation, 1>,
     contacts: &'a Contacts,
-) -> [&'a dyn ElementSet; 12] {
+    rubbing: &'a Elements<AnchoredSpring, 1>,
+) -> [&'a dyn ElementSet; 13] {
     let [a, b, c, d, e, f, g, h, i, j] = mechanics.sets();
-    [a, b, c, d, e, f, g, h, i, j, bed, contacts]
+    [a, b, c, d, e, f, g, h, i, j, bed, contacts, rubbing]
 }
 
 #[cfg(test)]
@@ -373,9 +405,17 @@ mod tests {
             PlaneMap { base: [[period, period * shear.sin()], [0.0, period * shear.cos()]], rates: [[[0.0; 2]; 2]; 2] };
         let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / period, x.y / period]).collect();
         let coordinates = TileCoordinates::with_plane(&network, &places, &map);
-        let mut system =
-            TileSystem::with(&network, &scene.yarns, &scene.fabric, 0.0, coordinates, [true; 2], Contacts::default())
-                .unwrap();
+        let mut system = TileSystem::with(
+            &network,
+            &scene.yarns,
+            &scene.fabric,
+            0.0,
+            coordinates,
+            [true; 2],
+            Contacts::default(),
+            Elements::default(),
+        )
+        .unwrap();
         let own = system.coordinates.own().clone();
         // The second pick goes along the warp, which slides through it, and to its side.
         let mut energy = |along: f64, aside: f64| {

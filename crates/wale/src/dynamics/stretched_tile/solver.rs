@@ -11,6 +11,7 @@ use crate::dynamics::tile_descent::{Descent, RULE};
 use crate::dynamics::tile_equilibrium::TileSettings;
 use crate::dynamics::tile_stiffness::UnitEnergies;
 use crate::dynamics::tile_system::TileSystem;
+use crate::fabric::Elements;
 
 /// Why a tile has no equilibrium under a stretch.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -110,7 +111,16 @@ impl StretchedTile {
         let bed = settings.bed * force / unit_length;
         let units = reference.units(coordinates.clone());
         let held = [true, !free_compression];
-        let system = TileSystem::with(&reference.network, yarns, card, bed, coordinates, held, Contacts::default())?;
+        let system = TileSystem::with(
+            &reference.network,
+            yarns,
+            card,
+            bed,
+            coordinates,
+            held,
+            Contacts::default(),
+            Elements::default(),
+        )?;
         let mut world = reference.rest().coordinates.clone();
         world.truncate(system.coordinates.own().len());
         world.extend([0.0; 2]);
