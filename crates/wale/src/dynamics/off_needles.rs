@@ -135,4 +135,34 @@ mod tests {
         let [stuck, strong] = [f64::INFINITY, 100.0].map(|friction| size(&at_rest(&rib, friction).1));
         assert!(near(stuck, strong, 1e-6), "{stuck:?} {strong:?}");
     }
+
+    #[test]
+    fn what_is_pulled_is_longer_and_as_wide_as_it_is_held() {
+        let yarn = YarnCard::unit();
+        let card: KnitCard = LoopProportions::thick().card(&yarn, 1.0);
+        let tile = knit::tile(&Chart::rib(1, 1).unwrap(), &card).unwrap();
+        let settings = TileSettings { tolerance: 1e-6, ..TileSettings::of(&card) };
+        let (yarns, fabric) = (Yarns::from(&yarn), (&card).into());
+        let start = disturbed(&tile, &settings, 1.0);
+        let [rows, columns] = tile.chart_size.map(f64::from);
+        let under = |pull: f64| {
+            let conditions = Conditions { width_held: true, pull, rubbing: None };
+            relax_under(&tile, &yarns, &fabric, &settings, start.clone(), &conditions)
+        };
+        let pulls = [50.0, 51.0, 52.0];
+        let found = pulls.map(under);
+        for at in &found {
+            assert!(at.converged);
+            assert_eq!(at.coordinates[start.len() - 2], start[start.len() - 2]);
+            assert_eq!(at.wale_spacing, start[start.len() - 2] / columns);
+        }
+        // What a pull lengthens it does work on: by the mean of two pulls the energy without them grows from one to the other.
+        let height = |at: &TileEquilibrium| at.course_spacing * rows;
+        let elastic = |i: usize| found[i].energy * tile.loops.len() as f64 + pulls[i] * height(&found[i]);
+        for i in 1..pulls.len() {
+            let longer = height(&found[i]) - height(&found[i - 1]);
+            let work = 0.5 * (pulls[i] + pulls[i - 1]) * longer;
+            assert!(longer > 1e-6 && (elastic(i) - elastic(i - 1) - work).abs() < 0.02 * work, "{longer} {work}");
+        }
+    }
 }
