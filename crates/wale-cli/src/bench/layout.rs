@@ -67,7 +67,7 @@ pub fn all(loops: u32) -> Result<Vec<LaidOut>, Failure> {
 ///
 /// # Errors
 /// When there is no such pattern.
-pub fn named(pattern: &str, loops: u32) -> Result<LaidOut, Failure> {
+fn named(pattern: &str, loops: u32) -> Result<LaidOut, Failure> {
     let scene = swatch::scene(pattern, 4 * loops)?;
     Ok(laid_out(pattern, &scene.structure, &scene.fabric, None))
 }
@@ -83,25 +83,29 @@ fn read(
     card: &FabricCard,
     reading: impl Fn(&str) -> Result<Structure, Failure>,
 ) -> Result<LaidOut, Failure> {
-    let (mut shortest, mut structure) = (f64::INFINITY, None);
-    for _ in 0..TIMES {
-        let began = Instant::now();
-        let made = black_box(reading(black_box(text))?);
-        shortest = shortest.min(began.elapsed().as_secs_f64());
-        structure = Some(made);
-    }
-    Ok(laid_out(fabric, &structure.expect("read at least once"), card, Some(shortest)))
+    let (read_s, structure) = shortest(|| reading(black_box(text)));
+    Ok(laid_out(fabric, &structure?, card, Some(read_s)))
 }
 
 fn laid_out(fabric: &str, structure: &Structure, card: &FabricCard, read_s: Option<f64>) -> LaidOut {
-    let mut found = LaidOut { fabric: fabric.to_owned(), loops: 0, nodes: 0, read_s, network_s: f64::INFINITY };
-    for _ in 0..TIMES {
+    let (network_s, network) = shortest(|| structure.network(card));
+    let (loops, nodes) = (network.loops.len(), network.node_count());
+    LaidOut { fabric: fabric.to_owned(), loops, nodes, read_s, network_s }
+}
+
+/// The shortest wall time of a few runs \[s\], and what the last one made.
+fn shortest<T>(mut run: impl FnMut() -> T) -> (f64, T) {
+    let mut timed = || {
         let began = Instant::now();
-        let network = black_box(structure.network(card));
-        found.network_s = found.network_s.min(began.elapsed().as_secs_f64());
-        (found.loops, found.nodes) = (network.loops.len(), network.node_count());
-    }
-    found
+        let made = black_box(run());
+        (began.elapsed().as_secs_f64(), made)
+    };
+    let first = timed();
+    (1..TIMES).fold(first, |(shortest, before), _| {
+        drop(before);
+        let (time, made) = timed();
+        (time.min(shortest), made)
+    })
 }
 
 /// Instructions of a triangle that grows by two stitches a row, beside eyelets and closed increases in turn, every row written out.

@@ -74,9 +74,7 @@ fn swatch(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
-    if !arguments.manner.quiet {
-        note(&format!("{} swatches falling on spheres, a step of each in turn …", PATTERNS.len()));
-    }
+    tell(arguments, &format!("{} swatches falling on spheres, a step of each in turn …", PATTERNS.len()));
     let compared = compare(&PATTERNS, arguments.nodes / 3, STEPS)?;
     if arguments.json {
         return output::json(&json!({ "threads": threads, "patterns": compared }));
@@ -112,9 +110,7 @@ fn patterns(arguments: &Bench, threads: usize) -> Result<(), Failure> {
 }
 
 fn layout(arguments: &Bench, threads: usize) -> Result<(), Failure> {
-    if !arguments.manner.quiet {
-        note(&format!("fabrics of {} loops, one after the other …", grouped(u64::from(LOOPS))));
-    }
+    tell(arguments, &format!("fabrics of {} loops, one after the other …", grouped(u64::from(LOOPS))));
     let before = triad();
     let mut fabrics = all(LOOPS)?;
     let bandwidth = before.max(triad());
@@ -175,11 +171,16 @@ fn solver(arguments: &Bench, threads: usize) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Says what is going on, unless that is unwanted.
+fn tell(arguments: &Bench, what: &str) {
+    if !arguments.manner.quiet {
+        note(what);
+    }
+}
+
 /// Measures a size, and says so.
 fn told(arguments: &Bench, pattern: &str, nodes: u32, steps: usize, solver: LinearSolver) -> Result<Measured, Failure> {
-    if !arguments.manner.quiet {
-        note(&format!("{pattern} of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
-    }
+    tell(arguments, &format!("{pattern} of {} nodes falling on a sphere …", grouped(u64::from(nodes))));
     measure(pattern, nodes, steps, solver)
 }
 
