@@ -8,6 +8,7 @@ pub mod bench;
 pub mod fit;
 pub mod lab;
 pub mod products;
+mod quantities;
 pub mod register;
 pub mod scenes;
 

@@ -86,6 +86,7 @@ fn reports_are_json() {
     assert_eq!(check["frames"], 9);
     let relaxed = json(&["relax", &scene, "--json"]);
     assert!((1e-3..1e-2).contains(&relaxed["wale_spacing_m"].as_f64().unwrap()), "{relaxed}");
+    assert!(relaxed["off_needles"].is_null(), "{relaxed}");
     let facts = json(&["inspect", &scene, "--json"]);
     let stacks: u64 =
         facts["fabric"]["nodes_by_stack_size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
@@ -97,6 +98,36 @@ fn reports_are_json() {
     fs::write(workshop.path("resolved.toml"), &resolved.stdout).unwrap();
     let again = wale(&["check", &workshop.text("resolved.toml"), "--resolved"]);
     assert_eq!(printed(&again), printed(&resolved));
+}
+
+#[test]
+fn lace_keeps_of_its_needles_what_friction_holds() {
+    let workshop = Workshop::new();
+    fs::write(
+        workshop.path("lace.toml"),
+        "schema = 1\n[fabric]\ncontacts = \"thick\"\n\
+         chart = { rows = 12, columns = 12, pattern = \"mesh\" }\n",
+    )
+    .unwrap();
+    let scene = workshop.text("lace.toml");
+    let spacing = |arguments: &[&str]| {
+        let found = json(&[&["relax", &scene, "--json"], arguments].concat());
+        (found["wale_spacing_m"].as_f64().unwrap(), found)
+    };
+    let (washed, _) = spacing(&[]);
+    let (kept, report) = spacing(&["--off-needles"]);
+    let needles = |report: &serde_json::Value, name: &str| report["off_needles"][name].as_f64().unwrap();
+    assert!((washed..needles(&report, "needle_pitch_m")).contains(&kept) && kept > 1.05 * washed, "{washed} {report}");
+    // The yarn's coefficient times what every contact keeps of its compression, and the pull that is usual.
+    assert!(needles(&report, "friction_N") > needles(&report, "take_down_N"), "{report}");
+    let (wider, report) = spacing(&["--off-needles", "--needle-pitch", "5 mm", "--take-down", "5 mN"]);
+    assert!(wider > kept, "{kept} {report}");
+    assert_eq!([needles(&report, "needle_pitch_m"), needles(&report, "take_down_N")], [5e-3, 5e-3]);
+    let too_far = wale(&["relax", &scene, "--off-needles", "--needle-pitch", "9 mm"]);
+    assert_fails(&too_far, 3, &["--needle-pitch of 9.000 mm", "loops of 15."]);
+    assert_fails(&wale(&["relax", &scene, "--needle-pitch", "3 mm"]), 2, &["--off-needles"]);
+    assert_fails(&wale(&["relax", &scene, "--off-needles", "--shakes", "2"]), 2, &["--shakes"]);
+    assert_fails(&wale(&["relax", &scene, "--off-needles", "--take-down", "3 mm"]), 2, &["--take-down", "force"]);
 }
 
 #[test]

@@ -3,15 +3,14 @@
 use std::path::PathBuf;
 
 use clap::{Args, Command, Subcommand, ValueEnum};
-use serde::de::IntoDeserializer;
-use serde::de::value::{Error as PlainError, StrDeserializer};
 use serde::{Deserialize, Serialize};
 use wale::scene::dimensions::{Angle, Length, Ratio};
-use wale::scene::units::{Any, Bounds, Dimension, Positive, Quantity};
+use wale::scene::units::Any;
 use wale_lab::card_file::SheetBending;
 use wale_lab::fabric_file::ArealMass;
 
 use super::Results;
+use super::quantities::{positive, quantity};
 
 /// Between what stretches tests end \[–\]: nothing is seen of less, and no fabric takes more.
 const LEAST_STRETCH: f64 = 1e-3;
@@ -337,17 +336,6 @@ pub struct BiasExtension {
     /// Largest angle of shear
     #[arg(long, default_value = "40 deg", value_parser = positive::<Angle>)]
     pub to: f64,
-}
-
-/// A quantity with its unit, in SI.
-fn quantity<D: Dimension, B: Bounds>(text: &str) -> Result<f64, String> {
-    let source: StrDeserializer<'_, PlainError> = text.into_deserializer();
-    // What scene files add on a line of its own stands after a colon here.
-    Quantity::<D, B>::deserialize(source).map(Quantity::si).map_err(|error| error.to_string().replace('\n', ": "))
-}
-
-fn positive<D: Dimension>(text: &str) -> Result<f64, String> {
-    quantity::<D, Positive>(text)
 }
 
 /// A stretch at which a test ends \[–\].

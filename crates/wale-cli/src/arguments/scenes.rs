@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use wale::scene::dimensions::{Force, Length};
 use wale::scene::schema::PresetName;
 
+use super::quantities::positive;
 use crate::machine::parse_size;
 
 /// `wale new`
@@ -150,6 +152,16 @@ pub struct Relax {
     /// card's proportions were fitted
     #[arg(long, value_parser = parse_bed)]
     pub bed: Option<f64>,
+    /// As the fabric comes off its needles, held by the friction of its yarn, instead of as it is when nothing rubs: lace keeps its
+    /// width so
+    #[arg(long, conflicts_with_all = ["starts", "shakes"])]
+    pub off_needles: bool,
+    /// Distance of neighbouring needles, such as "3.6 mm"; left out, that of the wales as they are laid out
+    #[arg(long, value_name = "LENGTH", requires = "off_needles", value_parser = positive::<Length>)]
+    pub needle_pitch: Option<f64>,
+    /// How hard each wale is pulled on the needles, such as "5 mN"; left out, 30 times bending stiffness over loop length squared
+    #[arg(long, value_name = "FORCE", requires = "off_needles", value_parser = positive::<Force>)]
+    pub take_down: Option<f64>,
 }
 
 fn parse_bed(text: &str) -> Result<f64, String> {

@@ -2,8 +2,9 @@
 //! found on periodic tiles without friction.
 //!
 //! `cargo run --release -p wale --example knit_swatches -- SWATCHES.json [point|thick] [NAME=VALUE …] [--least-loops N] [--most-loops N]
-//! [--fit ROUNDS] [--chart WORD] [--lace] [--shaken] [--off-needles PITCH,PULL,FRICTION] [--plot FILE]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
-//! `--chart` predicts only those charts whose names have a word in them; `--fit` first fits the card again, from the numbers that it has or is given;
+//! [--fit ROUNDS] [--fitted NAME,…] [--chart WORD] [--lace] [--shaken] [--off-needles PITCH,PULL,FRICTION] [--plot FILE]` prints predicted against measured sizes, of the charts that the card was fitted to and of all others apart.
+//! `--chart` predicts only those charts whose names have a word in them; `--fit` first fits the card again, from the numbers that it has or is given; `--fitted` names the charts that
+//! this is done with, by the ends of their names, stockinette among them, where they are not those of `swatches.rs`;
 //! `--lace` adds the charts of lace, with the same card, `--lace-only` leaves the others out; `--shaken` shakes each repeat of at most 200 loops at rest, which finds lower equilibria
 //! (a fit is made without); `--off-needles` takes each repeat from its needles against friction instead, as `wale::dynamics::off_needles` says; `--plot` draws all of it. Measured: KnitDB [Hofmann et al. 2019], 60 × 60 stitches of one yarn on one machine; `swatches.rs` says which are
 //! left out.
@@ -173,10 +174,22 @@ fn off_needles(text: &str) -> Result<OffNeedles, String> {
     }
 }
 
+/// Takes the named charts for those that the card is fitted to, and no others.
+fn fit_others(all: &mut [Swatch], names: &str) -> Result<(), String> {
+    all.iter_mut().for_each(|swatch| swatch.fitted = false);
+    for name in names.split(',') {
+        let named = all.iter_mut().find(|swatch| swatch.name.ends_with(name));
+        named.ok_or(format!("--fitted {name}: no chart of knits and purls has such a name"))?.fitted = true;
+    }
+    // Sizes are relative to that of stockinette, which is the first.
+    if all.first().is_some_and(|swatch| swatch.fitted) { Ok(()) } else { Err("--fitted: without stockinette".into()) }
+}
+
 fn run() -> Result<(), String> {
     let mut path = None;
     let (mut card, mut least, mut most, mut rounds) = (LoopProportions::thick(), 0, usize::MAX, 0);
-    let (mut plain, mut lace, mut shaken, mut word, mut picture, mut needles) = (true, false, false, None, None, None);
+    let (mut plain, mut lace, mut shaken) = (true, false, false);
+    let (mut word, mut names, mut picture, mut needles) = (None, None, None, None);
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         let mut text = || arguments.next().ok_or(format!("{argument} without a value"));
@@ -196,6 +209,7 @@ fn run() -> Result<(), String> {
             "--plot" => picture = Some(PathBuf::from(text()?)),
             "--chart" => word = Some(text()?),
             "--fit" => rounds = number()?,
+            "--fitted" => names = Some(text()?),
             _ => match argument.split_once('=') {
                 Some((name, value)) => set(&mut card, name, value)?,
                 None => path = Some(argument),
@@ -203,7 +217,10 @@ fn run() -> Result<(), String> {
         }
     }
     let path = path.ok_or("which file? knit_swatches SWATCHES.json")?;
-    let all = read(&path, Kind::KnitAndPurl)?;
+    let mut all = read(&path, Kind::KnitAndPurl)?;
+    if let Some(names) = names {
+        fit_others(&mut all, &names)?;
+    }
     let known: Vec<&Swatch> = all.iter().filter(|swatch| swatch.fitted).collect();
     if rounds > 0 {
         let (found, error) = Fit::new(&known, card).run(rounds);

@@ -5,7 +5,7 @@ use super::tile_stiffness::bending_and_length;
 use crate::energy::friction::AnchoredSpring;
 use crate::fabric::coordinates::{BLOCK, dof};
 use crate::fabric::{Elements, TileCoordinates};
-use crate::model::{KnitCard, Network, PassId, Yarns};
+use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
 
 /// What a knit goes through before it is measured, and what holds it back.
 ///
@@ -19,6 +19,33 @@ pub struct OffNeedles {
     pub take_down: f64,
     /// What it takes to slide a yarn through a contact afterwards, in `k_b/ℓ²` \[–\]; infinite where it sticks.
     pub friction: f64,
+}
+
+impl OffNeedles {
+    /// How hard a wale is pulled where nothing else is said, in `k_b/ℓ²` \[–\].
+    const TAKE_DOWN: f64 = 30.0;
+
+    /// Needles as far apart as the card lays its wales out, and friction of the card: the mean coefficient of all passes times the
+    /// compression that every contact keeps.
+    #[must_use]
+    pub fn of(network: &Network, yarns: &Yarns, card: &KnitCard) -> Self {
+        let of_yarn = |y: usize| {
+            let passes = network.yarn_passes(YarnId::new(y)).len() as f64;
+            passes * yarns.of(network.yarn_kind[y]).friction_coefficient
+        };
+        let coefficient = (0..network.yarn_count()).map(of_yarn).sum::<f64>() / network.pass_count().max(1) as f64;
+        Self {
+            pitch: card.wale_spacing / card.loop_length,
+            take_down: Self::TAKE_DOWN,
+            friction: coefficient * card.residual_compression / Self::force(yarns, card),
+        }
+    }
+
+    /// What forces are measured in: `k_b/ℓ²` \[N\].
+    #[must_use]
+    pub fn force(yarns: &Yarns, card: &KnitCard) -> f64 {
+        yarns.first().bending_stiffness / card.loop_length.powi(2)
+    }
 }
 
 /// Stiffness of a contact that sticks, in `k_b/ℓ³` \[–\]: what it may still slide by changes no size in its third digit.
@@ -61,6 +88,7 @@ pub fn off_needles(
     let rest = relax_under(network, &yarns, &fabric, settings, on_needles.coordinates, &free);
     TileEquilibrium {
         iterations: on_needles.iterations + rest.iterations,
+        residual: on_needles.residual.max(rest.residual),
         converged: on_needles.converged && rest.converged,
         ..rest
     }

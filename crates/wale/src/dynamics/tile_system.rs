@@ -45,6 +45,21 @@ pub(super) struct TileSystem {
     period_weight: f64,
 }
 
+/// What a tile is between, besides the forces of its own yarns.
+#[derive(Debug, Default)]
+pub(super) struct Around {
+    /// Stiffness of the bed under every node \[N/m\].
+    pub bed: f64,
+    /// Which numbers of the plane are held.
+    pub held: [bool; 2],
+    /// Segments that hold each other off.
+    pub contacts: Contacts,
+    /// Friction of every contact.
+    pub rubbing: Elements<AnchoredSpring, 1>,
+    /// What pulls at the numbers of the plane \[N\].
+    pub pull: [f64; 2],
+}
+
 impl TileSystem {
     /// The system of a tile as it is brought to rest with these settings: a knit with periods that are unknown, a weave at its sett.
     ///
@@ -72,11 +87,11 @@ impl TileSystem {
         let mut coordinates = TileCoordinates::new(network);
         let contacts = contacts(&mut coordinates);
         let rubbing = conditions.rubbing(network, &coordinates);
-        let system = Self::with(network, yarns, card, bed, coordinates, held, contacts, rubbing);
-        Self { pull: [0.0, conditions.pull], ..system.expect("a tile fits in memory") }
+        let around = Around { bed, held, contacts, rubbing, pull: [0.0, conditions.pull] };
+        Self::with(network, yarns, card, coordinates, around).expect("a tile fits in memory")
     }
 
-    /// Over given coordinates, of which numbers of the plane may be held; `bed` \[N/m\] is the stiffness under every node.
+    /// Over given coordinates.
     ///
     /// # Errors
     /// If the system is too large.
@@ -84,12 +99,10 @@ impl TileSystem {
         network: &Network,
         yarns: &Yarns,
         card: &FabricCard,
-        bed: f64,
         mut coordinates: TileCoordinates,
-        held: [bool; 2],
-        contacts: Contacts,
-        rubbing: Elements<AnchoredSpring, 1>,
+        around: Around,
     ) -> Result<Self, CholeskyError> {
+        let Around { bed, held, contacts, rubbing, pull } = around;
         let mechanics = Mechanics::new(network, yarns, card, &mut coordinates);
         let springs = self::bed(network, bed);
         // One node's place and one sliding coordinate of each yarn are held: the rigid motions, and nothing else. At the crossings of a
@@ -122,7 +135,7 @@ impl TileSystem {
             bed: springs,
             contacts,
             rubbing,
-            pull: [0.0; 2],
+            pull,
             free,
             second,
             places,
@@ -405,17 +418,8 @@ mod tests {
             PlaneMap { base: [[period, period * shear.sin()], [0.0, period * shear.cos()]], rates: [[[0.0; 2]; 2]; 2] };
         let places: Vec<[f64; 2]> = network.position.iter().map(|x| [x.x / period, x.y / period]).collect();
         let coordinates = TileCoordinates::with_plane(&network, &places, &map);
-        let mut system = TileSystem::with(
-            &network,
-            &scene.yarns,
-            &scene.fabric,
-            0.0,
-            coordinates,
-            [true; 2],
-            Contacts::default(),
-            Elements::default(),
-        )
-        .unwrap();
+        let around = Around { held: [true; 2], ..Around::default() };
+        let mut system = TileSystem::with(&network, &scene.yarns, &scene.fabric, coordinates, around).unwrap();
         let own = system.coordinates.own().clone();
         // The second pick goes along the warp, which slides through it, and to its side.
         let mut energy = |along: f64, aside: f64| {

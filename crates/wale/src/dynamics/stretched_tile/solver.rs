@@ -6,12 +6,10 @@ use wale_numerics::trust::Trust;
 
 use super::direction::Direction;
 use super::reference::TileReference;
-use crate::dynamics::tile_contacts::Contacts;
 use crate::dynamics::tile_descent::{Descent, RULE};
 use crate::dynamics::tile_equilibrium::TileSettings;
 use crate::dynamics::tile_stiffness::UnitEnergies;
-use crate::dynamics::tile_system::TileSystem;
-use crate::fabric::Elements;
+use crate::dynamics::tile_system::{Around, TileSystem};
 
 /// Why a tile has no equilibrium under a stretch.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -110,17 +108,8 @@ impl StretchedTile {
         let force = bending / unit_length.powi(2);
         let bed = settings.bed * force / unit_length;
         let units = reference.units(coordinates.clone());
-        let held = [true, !free_compression];
-        let system = TileSystem::with(
-            &reference.network,
-            yarns,
-            card,
-            bed,
-            coordinates,
-            held,
-            Contacts::default(),
-            Elements::default(),
-        )?;
+        let around = Around { bed, held: [true, !free_compression], ..Around::default() };
+        let system = TileSystem::with(&reference.network, yarns, card, coordinates, around)?;
         let mut world = reference.rest().coordinates.clone();
         world.truncate(system.coordinates.own().len());
         world.extend([0.0; 2]);
