@@ -239,7 +239,7 @@ fn crossing(line: &mut Line<'_>) -> InstructionError {
     line.error_at(place.clone(), Reason::NotHeld { word: line.source(&place), why: NotHeld::Cable })
 }
 
-/// `sl1, k1, psso`, `sl1-k2tog-psso`, `sl 2 knitwise, k1, p2sso`: decreases that pass slipped stitches over what is knitted.
+/// `sl1, k1, psso`, `sl1-k2tog-psso`, `sl 2 knitwise, k1, p2sso`, `sl1, p1, psso`: decreases that pass slipped stitches over what is worked.
 fn passed_over(line: &mut Line<'_>) -> Option<Stitch> {
     let mark = line.mark();
     let found = slip_knit_pass(line).and_then(Stitch::named);
@@ -260,8 +260,15 @@ fn slip_knit_pass(line: &mut Line<'_>) -> Option<&'static str> {
     line.take_word(&["tog", "together"]);
     line.take_word(NEEDLE_GOES_IN);
     hyphen_or_separators(line);
-    let knitted =
-        if line.take_word(&["k2tog"]) { 2 } else { counted(line, &["k", "knit"]).filter(|count| *count == 1)? };
+    let (purled, worked) = if line.take_word(&["k2tog"]) {
+        (false, 2)
+    } else if line.take_word(&["p2tog"]) {
+        (true, 2)
+    } else if line.word()?.starts_with('p') {
+        (true, counted(line, &["p", "purl"]).filter(|count| *count == 1)?)
+    } else {
+        (false, counted(line, &["k", "knit"]).filter(|count| *count == 1)?)
+    };
     hyphen_or_separators(line);
     if !line.take_word(&["psso", "p2sso"]) {
         if !line.take_word(&["pass"]) {
@@ -273,10 +280,13 @@ fn slip_knit_pass(line: &mut Line<'_>) -> Option<&'static str> {
             return None;
         }
     }
-    match (slipped, knitted) {
-        (1, 1) => Some("skp"),
-        (1, 2) => Some("sk2p"),
-        (2, 1) => Some("s2kp"),
+    // A purl goes through its loops away from the knitter, so that what is passed over it comes to lie behind.
+    match (purled, slipped, worked) {
+        (false, 1, 1) => Some("skp"),
+        (false, 1, 2) => Some("sk2p"),
+        (false, 2, 1) => Some("s2kp"),
+        (true, 1, 1) => Some("p2tog"),
+        (true, 1, 2) => Some("p3tog"),
         _ => None,
     }
 }
@@ -408,4 +418,24 @@ fn fixed_count(line: &Line<'_>, parts: &[Part], start: usize) -> Parsed<u64> {
         })?;
     }
     Ok(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn yarns_that_nothing_is_knitted_with_are_no_parts_of_a_row() {
+        let text = "with A, with B, k1, [with A, with C, with B, k1] 2 times, with A, with B";
+        let row = parse(&mut Line::new(text, 0, text.len()), &mut Yarns::default()).unwrap();
+        assert_eq!(row.parts.len(), 4, "with B, k1, the repeat, with B: {row:?}");
+        let PartKind::Repeat(parts, ..) = &row.parts[2].kind else { panic!("{row:?}") };
+        assert_eq!(parts.len(), 2, "with B, k1: {row:?}");
+        let yarn = |part: &Part| if let PartKind::With(yarn) = part.kind { yarn } else { u8::MAX };
+        assert_eq!(
+            [yarn(&row.parts[0]), yarn(&parts[0]), yarn(&row.parts[3])],
+            [1; 3],
+            "the last named is knitted with"
+        );
+    }
 }

@@ -259,11 +259,22 @@ fn decreases_are_read_by_every_name_that_knitters_give_them() {
     for decrease in ["cdd", "s2kp", "s2kp2", "s2kpo", "sl2-k1-p2sso", "sl 2 tog kwise, k1, p2sso"] {
         assert_eq!(stitch(decrease), '^', "{decrease}");
     }
-    for (decrease, symbol) in [("p2tog tbl", 'l'), ("ssp", 'l'), ("p3tog tbl", 'L')] {
+    for (decrease, symbol) in [
+        ("p2tog tbl", 'l'),
+        ("ssp", 'l'),
+        ("p3tog tbl", 'L'),
+        ("sl1, p1, psso", 'r'),
+        ("slip 1 purlwise, purl 1, pass slipped st over", 'r'),
+        ("sl1-p2tog-psso", 'R'),
+    ] {
         assert_eq!(stitch(decrease), symbol, "{decrease}");
     }
-    // What only begins like one is slipped and knitted.
+    // What only begins like one is slipped, knitted and purled.
     assert_eq!(rows("Cast on 3\nRow 1: sl1, k1, p1\n"), ["pkV"]);
+    assert_eq!(rows("Cast on 3\nRow 1: sl1, p1, k1\n"), ["kpV"]);
+    assert_eq!(rows("Cast on 4\nRow 1: sl1, p2tog, p1\n"), ["prV"]);
+    // On the wrong side it leans to the right as seen from the front, as `p2tog` does.
+    assert_eq!(rows("Cast on 2\nRow 1: k\nRow 2: sl1, p1, psso\n"), rows("Cast on 2\nRow 1: k\nRow 2: p2tog\n"));
 }
 
 #[test]
