@@ -86,10 +86,17 @@ impl OpenedScene {
         Estimate::of(&self.scene)
     }
 
-    /// The fabric as its chart lays it out, without compensation: quick, and enough to count.
+    /// The fabric as its chart lays it out, without compensation: quick.
     #[must_use]
     pub fn plain_network(&self) -> Network {
         plain_network(&self.scene)
+    }
+
+    /// The fabric that is counted and measured before a run: as the run begins, or as its chart lays it out where there is no scene, which
+    /// alone asks for the shapes of relaxed loops.
+    #[must_use]
+    pub fn measured_network(&self) -> Network {
+        if self.assumed.is_some() { self.plain_network() } else { self.start().network }
     }
 
     /// The fabric before it is placed, and what rest-shape compensation did to it.

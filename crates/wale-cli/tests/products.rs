@@ -88,6 +88,9 @@ fn reports_are_json() {
     assert!((1e-3..1e-2).contains(&relaxed["wale_spacing_m"].as_f64().unwrap()), "{relaxed}");
     assert!(relaxed["off_needles"].is_null(), "{relaxed}");
     let facts = json(&["inspect", &scene, "--json"]);
+    for alike in ["fabric", "shape", "areal_mass_kg_per_m2"] {
+        assert_eq!(check[alike], facts[alike], "{alike}: one fabric, whichever command measures it");
+    }
     let stacks: u64 =
         facts["fabric"]["nodes_by_stack_size"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).sum();
     assert_eq!(stacks, facts["fabric"]["nodes"].as_u64().unwrap());

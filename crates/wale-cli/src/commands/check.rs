@@ -23,7 +23,7 @@ pub fn check(arguments: &Check) -> Result<(), Failure> {
     opened.check_memory(arguments.limits.max_memory)?;
     let [rows, columns] = opened.chart_size();
     let estimate = opened.estimate();
-    let network = opened.plain_network();
+    let network = opened.measured_network();
     let facts = FabricFacts::of(&opened.scene, &network, &laid_out(&network), opened.assumed);
     let census = &facts.census;
     let plan = &opened.scene.plan.simulation;

@@ -25,8 +25,7 @@ pub fn inspect(arguments: &Inspect) -> Result<(), Failure> {
     } else {
         let opened = OpenedScene::read_with_yarn(path, arguments.yarn)?;
         opened.check_memory(None)?;
-        // Without a scene nothing asks for the shapes of relaxed loops.
-        network = if opened.assumed.is_some() { opened.plain_network() } else { opened.start().network };
+        network = opened.measured_network();
         frame = laid_out(&network);
         run = None;
         (scene, assumed) = (opened.scene, opened.assumed);
