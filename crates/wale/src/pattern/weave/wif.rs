@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::draft::{Draft, DraftError, Thread};
 use super::ini::{self, At, Entry, Ini, Section, shortened};
-use super::shed::Sheds;
+use super::shed::{Lifts, Sheds};
 use crate::pattern::remark::Remark;
 
 /// Most bytes of a file.
@@ -154,25 +154,6 @@ struct Threads {
     threads: Vec<Thread>,
 }
 
-/// What is pressed or lifted at every pick, and what each treadle lifts if it is treadles.
-struct Lifts {
-    pressed: BTreeMap<u64, Vec<u64>>,
-    tieup: Option<BTreeMap<u64, Vec<u64>>>,
-}
-
-impl Lifts {
-    /// The shafts that are lifted at a pick, some perhaps more than once.
-    fn at(&self, pick: u64) -> impl Iterator<Item = u64> {
-        let pressed = self.pressed.get(&pick).into_iter().flatten();
-        pressed
-            .flat_map(|one| match &self.tieup {
-                None => std::slice::from_ref(one),
-                Some(tieup) => tieup.get(one).map_or(&[][..], Vec::as_slice),
-            })
-            .copied()
-    }
-}
-
 impl File {
     fn section(&self, name: &'static str, says: &'static str) -> Parsed<&Section> {
         self.ini.sections.get(name).ok_or_else(|| self.missing(name, says))
@@ -207,7 +188,7 @@ impl File {
         let threading = self.lists("THREADING", &threading, ("end", ends), ("shaft", shafts))?;
         let sheds = Sheds::new(warp.count, shafts as usize, &threading);
         let lifts = self.lifts(picks, shafts, treadles)?;
-        let warp_up = (1..=picks).map(|pick| sheds.warp_up(lifts.at(pick), rising)).collect();
+        let warp_up = (1..=picks).map(|pick| sheds.warp_up(&lifts.at(pick), rising)).collect();
         let mut draft = Draft::new(warp_up).map_err(|size| At { line: 1, span: 0..0 }.error(Reason::Size(size)))?;
         (draft.warp, draft.weft) = (warp.threads, weft.threads);
         Ok(draft)
@@ -223,14 +204,14 @@ impl File {
                     let what = || "both a lift plan and treadling: the lift plan counts".to_owned();
                     self.ini.remarks.add(plan.at.line, what);
                 }
-                let shafts = self.lists("LIFTPLAN", &plan, ("pick", picks), ("shaft", shafts))?;
-                Ok(Lifts { pressed: shafts, tieup: None })
+                let lifted = self.lists("LIFTPLAN", &plan, ("pick", picks), ("shaft", shafts))?;
+                Ok(Lifts::new(shafts as usize, lifted, None))
             }
             (None, Some(treadling)) => {
                 let tieup = self.section("TIEUP", "which shafts each treadle lifts")?.clone();
                 let tieup = self.lists("TIEUP", &tieup, ("treadle", treadles), ("shaft", shafts))?;
                 let pressed = self.lists("TREADLING", &treadling, ("pick", picks), ("treadle", treadles))?;
-                Ok(Lifts { pressed, tieup: Some(tieup) })
+                Ok(Lifts::new(shafts as usize, pressed, Some(tieup)))
             }
             (None, None) => Err(self.missing("TREADLING", "what is woven (nor is there a [LIFTPLAN])")),
         }
