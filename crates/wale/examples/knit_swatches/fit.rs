@@ -1,4 +1,5 @@
-//! Fit of a card to sizes: Gauss–Newton steps, with the slopes of every size by every number at equilibrium.
+//! Fit of a card to sizes: Gauss–Newton steps, with the slopes of every size by every number at equilibrium, or by differences where
+//! what comes off its needles is held by friction.
 
 use rayon::prelude::*;
 use wale::dynamics::tile_equilibrium::TileEquilibrium;
@@ -51,8 +52,10 @@ pub fn numbers(proportions: &LoopProportions) -> &'static [Number] {
     if proportions.thickness.is_some() { &NUMBERS } else { &NUMBERS[..8] }
 }
 
-/// A step of a difference, in steps that matter.
+/// A step of a difference, in steps that matter: of slopes at equilibrium, and of what comes off its needles, where a contact that slides or
+/// does not makes sizes jump by as much as smaller steps would change them.
 const DIFFERENCE: f64 = 1e-3;
+const DIFFERENCE_OFF_NEEDLES: f64 = 0.3;
 /// Longest step of a number, in steps that matter: further away a repeat is soon in another equilibrium.
 const LONGEST: f64 = 0.5;
 /// Weight of a step that matters away from where the fit began.
@@ -64,14 +67,15 @@ type Equilibria = Vec<Vec<TileEquilibrium>>;
 pub struct Fit<'a> {
     swatches: &'a [&'a Swatch],
     numbers: &'static [Number],
-    start: LoopProportions,
+    start: Model,
     first: Vec<f64>,
 }
 
 impl<'a> Fit<'a> {
-    pub fn new(swatches: &'a [&'a Swatch], start: LoopProportions) -> Self {
-        let numbers = numbers(&start);
-        let first = numbers.iter().map(|number| *(number.place)(&mut start.clone())).collect();
+    /// Of the proportions and with the settings of a model.
+    pub fn new(swatches: &'a [&'a Swatch], start: Model) -> Self {
+        let numbers = numbers(&start.proportions);
+        let first = numbers.iter().map(|number| *(number.place)(&mut start.proportions.clone())).collect();
         Self { swatches, numbers, start, first }
     }
 
@@ -89,7 +93,7 @@ impl<'a> Fit<'a> {
                 let trial = self.step(&x, &residuals, &columns, damping);
                 let mut found = self.relax(&trial, Some(&at));
                 let better = |found: &Equilibria| square(&self.residuals(&trial, &sizes(found))) < square(&residuals);
-                if better(&found) {
+                if self.start.needles.is_none() && better(&found) {
                     // What was followed from equilibrium to equilibrium need not be the lowest.
                     found = lowest(found, self.relax(&trial, None));
                 }
@@ -109,11 +113,11 @@ impl<'a> Fit<'a> {
     }
 
     fn model(&self, x: &[f64]) -> Model {
-        let mut proportions = self.start.clone();
+        let mut model = self.start.clone();
         for (number, x) in self.numbers.iter().zip(x) {
-            *(number.place)(&mut proportions) = *x;
+            *(number.place)(&mut model.proportions) = *x;
         }
-        Model::new(proportions)
+        model
     }
 
     fn relax(&self, x: &[f64], near: Option<&Equilibria>) -> Equilibria {
@@ -155,6 +159,15 @@ impl<'a> Fit<'a> {
                 moved
             })
             .collect();
+        let slope = |(i, moved): (usize, &Vec<f64>), sizes: &[[f64; 2]]| -> Vec<f64> {
+            let new = self.residuals(moved, sizes);
+            let steps = self.numbers[i].step / self.difference(i, x);
+            new.iter().zip(residuals).map(|(new, old)| (new - old) * steps).collect()
+        };
+        if self.start.needles.is_some() {
+            let found = |(i, moved)| slope((i, moved), &sizes(&self.relax(moved, None)));
+            return moved.par_iter().enumerate().with_max_len(1).map(found).collect();
+        }
         let models: Vec<Model> = moved.iter().map(|moved| self.model(moved)).collect();
         let here = self.model(x);
         let of = |(k, swatch): (usize, &&Swatch)| -> Vec<[f64; 2]> {
@@ -171,20 +184,18 @@ impl<'a> Fit<'a> {
         };
         let changes: Vec<Vec<[f64; 2]>> = self.swatches.par_iter().enumerate().with_max_len(1).map(of).collect();
         let base = sizes(at);
-        let slope = |(i, moved): (usize, &Vec<f64>)| -> Vec<f64> {
+        let at_moved = |i: usize| -> Vec<[f64; 2]> {
             let of_swatch = |(base, change): (&[f64; 2], &Vec<[f64; 2]>)| [0, 1].map(|k| base[k] + change[i][k]);
-            let sizes: Vec<[f64; 2]> = base.iter().zip(&changes).map(of_swatch).collect();
-            let new = self.residuals(moved, &sizes);
-            let steps = self.numbers[i].step / self.difference(i, x);
-            new.iter().zip(residuals).map(|(new, old)| (new - old) * steps).collect()
+            base.iter().zip(&changes).map(of_swatch).collect()
         };
-        moved.iter().enumerate().map(slope).collect()
+        moved.iter().enumerate().map(|(i, moved)| slope((i, moved), &at_moved(i))).collect()
     }
 
     /// A small change of a number that stays within its bounds.
     fn difference(&self, i: usize, x: &[f64]) -> f64 {
         let Number { bounds, step, .. } = &self.numbers[i];
-        let ahead = DIFFERENCE * step;
+        let by = if self.start.needles.is_some() { DIFFERENCE_OFF_NEEDLES } else { DIFFERENCE };
+        let ahead = by * step;
         if x[i] + ahead > bounds[1] { -ahead } else { ahead }
     }
 

@@ -230,7 +230,7 @@ fn run() -> Result<(), String> {
     }
     let known: Vec<&Swatch> = all.iter().filter(|swatch| swatch.fitted).collect();
     if rounds > 0 {
-        let (found, error) = Fit::new(&known, card).run(rounds);
+        let (found, error) = Fit::new(&known, Model { needles, ..Model::new(card) }).run(rounds);
         card = found;
         println!("fitted to {:.4}:", error);
         for number in numbers(&card) {

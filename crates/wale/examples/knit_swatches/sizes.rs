@@ -79,6 +79,10 @@ impl Model {
 
     /// Equilibria found from those of a card that differs a little; from anew if one of them is none any more.
     pub fn relaxed_from(&self, chart: &Chart, near: &[TileEquilibrium]) -> Vec<TileEquilibrium> {
+        // What friction holds depends on where it came from.
+        if self.needles.is_some() {
+            return self.relaxed(chart);
+        }
         let (tile, card) = (self.tile(chart), self.card());
         let again = |at: &TileEquilibrium| {
             relax_tile_from(&tile, &YarnCard::unit(), &card, &self.settings, at.coordinates.clone())
