@@ -118,6 +118,8 @@ fn lace_keeps_of_its_needles_what_friction_holds() {
         (found["wale_spacing_m"].as_f64().unwrap(), found)
     };
     let (washed, _) = spacing(&[]);
+    let told = |arguments: &[&str]| printed(&wale(&[&["relax", &scene], arguments].concat()));
+    assert!(told(&[]).contains("see --off-needles") && !told(&["--off-needles"]).contains("see --off-needles"));
     let (kept, report) = spacing(&["--off-needles"]);
     let needles = |report: &serde_json::Value, name: &str| report["off_needles"][name].as_f64().unwrap();
     assert!((washed..needles(&report, "needle_pitch_m")).contains(&kept) && kept > 1.05 * washed, "{washed} {report}");

@@ -6,7 +6,7 @@ use wale::dynamics::tile_equilibrium::{TileSettings, relax_from_starts};
 use wale::dynamics::tile_shaking::shaken;
 use wale::measure::Census;
 use wale::model::{KnitCard, Network, Yarns};
-use wale::pattern::knit;
+use wale::pattern::{Stitch, knit};
 
 use crate::arguments::Relax;
 use crate::exit::{Code, Failure};
@@ -111,6 +111,9 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
     let others = found.iter().filter(|at| at.converged && at.energy > best.energy * (1.0 + 1e-6)).count();
     if others > 0 {
         say!("  starts   {others} of {} came to rest higher: the equilibrium is not unique", found.len())?;
+    }
+    if needles.is_none() && repeat.rows().iter().flatten().any(|stitch| *stitch == Stitch::YarnOver) {
+        say!("  lace     keeps its width by friction, of which there is none here: see --off-needles")?;
     }
     Ok(())
 }
