@@ -18,6 +18,7 @@ pub mod stretched_tile;
 mod surroundings;
 pub mod system;
 pub mod terms;
+mod tile_conditions;
 mod tile_contacts;
 mod tile_descent;
 pub mod tile_equilibrium;

@@ -1,11 +1,10 @@
 //! A repeat as it comes off the needles: stretched to their pitch, pulled, let go, and held by friction from there on.
 
+use super::tile_conditions::{Conditions, Rubbing};
 use super::tile_equilibrium::{TileEquilibrium, TileSettings, disturbed, relax_under};
 use super::tile_stiffness::bending_and_length;
-use crate::energy::friction::AnchoredSpring;
-use crate::fabric::coordinates::{BLOCK, dof};
-use crate::fabric::{Elements, TileCoordinates};
-use crate::model::{KnitCard, Network, PassId, YarnId, Yarns};
+use crate::fabric::coordinates::BLOCK;
+use crate::model::{KnitCard, Network, YarnId, Yarns};
 
 /// What a knit goes through before it is measured, and what holds it back.
 ///
@@ -91,41 +90,6 @@ pub fn off_needles(
         residual: on_needles.residual.max(rest.residual),
         converged: on_needles.converged && rest.converged,
         ..rest
-    }
-}
-
-/// What a tile is under besides its own forces.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Conditions {
-    /// Whether its width is held.
-    pub width_held: bool,
-    /// What pulls along the wales \[N\].
-    pub pull: f64,
-    /// What slides against friction.
-    pub rubbing: Option<Rubbing>,
-}
-
-/// Friction of every contact.
-#[derive(Clone, Debug)]
-pub(super) struct Rubbing {
-    /// Largest force \[N\], and the stiffness below it \[N/m\].
-    limit: f64,
-    stiffness: f64,
-    /// Where nothing has slid, by own slots \[m\].
-    anchors: Vec<f64>,
-}
-
-impl Conditions {
-    /// Friction as elements of a tile.
-    pub fn rubbing(&self, network: &Network, coordinates: &TileCoordinates) -> Elements<AnchoredSpring, 1> {
-        let mut springs = Elements::default();
-        let Some(Rubbing { limit, stiffness, anchors }) = &self.rubbing else { return springs };
-        for pass in (0..network.pass_count()).map(PassId::new) {
-            let slot = coordinates.own().slot(pass);
-            let spring = AnchoredSpring { stiffness: *stiffness, limit: *limit, anchor: anchors[slot] };
-            springs.push(spring, [dof(slot)]);
-        }
-        springs
     }
 }
 

@@ -194,7 +194,7 @@ impl<'a> TileContacts<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::off_needles::Conditions;
+    use crate::dynamics::tile_conditions::Conditions;
     use crate::dynamics::tile_equilibrium::{TileSettings, relax_tile};
     use crate::dynamics::tile_system::TileSystem;
     use crate::pattern::knit;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use wale_numerics::trust::Trust;
 
-use super::off_needles::Conditions;
+use super::tile_conditions::Conditions;
 use super::tile_contacts::TileContacts;
 use super::tile_descent::{Descent, FIRST_SHIFT, RULE};
 use super::tile_stiffness::bending_and_length;

@@ -5,8 +5,8 @@ use wale_numerics::bordered::Bordered;
 use wale_numerics::sparse_cholesky::CholeskyError;
 use wale_numerics::trust::Foreseen;
 
-use super::off_needles::Conditions;
 use super::strands::{PART, first_meeting};
+use super::tile_conditions::Conditions;
 use super::tile_contacts::Contacts;
 use super::tile_equilibrium::TileSettings;
 use super::tile_places::places_of;
@@ -45,7 +45,7 @@ pub(super) struct TileSystem {
     period_weight: f64,
 }
 
-/// What a tile is between, besides the forces of its own yarns.
+/// What a system is made of besides the forces of a tile's own yarns.
 #[derive(Debug, Default)]
 pub(super) struct Around {
     /// Stiffness of the bed under every node \[N/m\].

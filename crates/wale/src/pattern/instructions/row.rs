@@ -260,15 +260,9 @@ fn slip_knit_pass(line: &mut Line<'_>) -> Option<&'static str> {
     line.take_word(&["tog", "together"]);
     line.take_word(NEEDLE_GOES_IN);
     hyphen_or_separators(line);
-    let (purled, worked) = if line.take_word(&["k2tog"]) {
-        (false, 2)
-    } else if line.take_word(&["p2tog"]) {
-        (true, 2)
-    } else if line.word()?.starts_with('p') {
-        (true, counted(line, &["p", "purl"]).filter(|count| *count == 1)?)
-    } else {
-        (false, counted(line, &["k", "knit"]).filter(|count| *count == 1)?)
-    };
+    let purled = line.word()?.starts_with('p');
+    let (together, alone) = if purled { ("p2tog", ["p", "purl"]) } else { ("k2tog", ["k", "knit"]) };
+    let worked = if line.take_word(&[together]) { 2 } else { counted(line, &alone).filter(|count| *count == 1)? };
     hyphen_or_separators(line);
     if !line.take_word(&["psso", "p2sso"]) {
         if !line.take_word(&["pass"]) {
