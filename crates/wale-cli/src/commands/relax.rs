@@ -61,7 +61,7 @@ pub fn relax(arguments: &Relax) -> Result<(), Failure> {
                 arguments.scene.display(),
                 best.iterations,
                 best.residual,
-                if needles.is_some() { "; try a smaller --needle-pitch or --take-down" } else { "" }
+                if needles.is_some() { "; try another --needle-pitch, or a smaller --take-down" } else { "" }
             ),
         ));
     }
